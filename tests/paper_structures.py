@@ -1,26 +1,21 @@
 """Structures of the paper, single blocks, and ground motions, for the tests of every layer."""
 
-from __future__ import annotations
-
 import math
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Mapping
 from dataclasses import astuple, replace
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any, TypeVar
 
 import numpy as np
 import pytest
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from oracles import devices as oracle_kinds
 from oracles.storey_lagrangian import OracleSystem
 from scipy.signal import lsim
 
 from rpscli.analyses.kernels.systems import uplifted_rate
-from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.constants import STANDARD_GRAVITY
@@ -33,10 +28,8 @@ from rpscli.model.devices import (
     ViscousDamper,
 )
 from rpscli.model.impact import ImpactLaw
-from rpscli.model.podium import Device, PodiumStructure
+from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import (
-    ModalDamping,
-    Profile,
     RayleighDamping,
     Superstructure,
     first_mode_strengths,
@@ -47,10 +40,6 @@ from rpscli.records.ground_motion import GroundMotion
 
 Array = NDArray[np.float64]
 
-RecordLoader = Callable[[str], GroundMotion]
-"""From the name of a component to its motion."""
-
-Value = TypeVar("Value")
 
 COMPILED = not are_interpreted()
 """Whether the kernels are machine code; interpreted they are some hundred times slower."""
@@ -70,42 +59,35 @@ FLAT = 0.0
 """Curvature ratio of flat ends."""
 
 
-def known(value: Value | None) -> Value:
+def known(value):
     """A value that is there."""
     assert value is not None
     return value
 
 
-def building(
-    storeys: int,
-    period: float | None = None,
-    damping: RayleighDamping | ModalDamping | None = None,
-    profile: Profile = "sine",
-) -> Superstructure:
+def building(storeys, period=None, damping=None, profile="sine"):
     """Equal floors, T_1 = n/10 s, 5 % in modes 1 and 2 unless said otherwise."""
     masses = np.full(storeys, 2e5)
     stiffnesses = profile_stiffnesses(masses, period or storeys / 10.0, profile)
     return Superstructure(masses, stiffnesses, damping or RayleighDamping(0.05, (1, 2)))
 
 
-def yielding(
-    above: Superstructure, first: float, hardening: float = 0.05
-) -> Superstructure:
+def yielding(above, first, hardening=0.05):
     """The building with strengths as the shears of its first mode, from that of storey 1 [N]."""
     strengths = first_mode_strengths(above.masses, above.stiffnesses, first)
     return replace(above, strengths=strengths, hardening=hardening)
 
 
 def podium(
-    storeys: int,
-    tan_alpha: float = 0.15,
-    rho: float = 0.5,
+    storeys,
+    tan_alpha=0.15,
+    rho=0.5,
     *,
-    R: float = 1.5,
-    law: ImpactLaw | None = None,
-    superstructure: Superstructure | None = None,
-    gravity: float = STANDARD_GRAVITY,
-) -> PodiumStructure:
+    R=1.5,
+    law=None,
+    superstructure=None,
+    gravity=STANDARD_GRAVITY,
+):
     """gamma = 10, eta = n, tan alpha' = 2 tan alpha; a rigid frame for n = 0;
     the paper's impact law."""
     above = superstructure or (building(storeys) if storeys else None)
@@ -113,38 +95,30 @@ def podium(
     return PodiumStructure(bearing, 2e4, 2e5, above, law or ImpactLaw("rigid"), gravity)
 
 
-def block(
-    half_width: float, half_height: float, restitution: float | None = None
-) -> PodiumStructure:
+def block(half_width, half_height, restitution=None):
     """A rectangular block that stands alone; Housner's restitution unless given."""
     law = ImpactLaw() if restitution is None else ImpactLaw("value", restitution)
     size, slope = math.hypot(half_width, half_height), half_width / half_height
     return PodiumStructure(Bearing(size, slope, slope, FLAT), 1e3, 0.0, None, law)
 
 
-def slender_block(size: float, restitution: float | None = None) -> PodiumStructure:
+def slender_block(size, restitution=None):
     """A block of semi-diagonal `size` so slender that it obeys the linear theory."""
     alpha = math.atan(SLENDER)
     return block(size * math.sin(alpha), size * math.cos(alpha), restitution)
 
 
-def ground(acceleration: ArrayLike, dt: float) -> GroundMotion:
+def ground(acceleration, dt):
     """A ground motion from its samples [m/s2]."""
     return GroundMotion(np.asarray(acceleration, dtype=float), dt, "made", "made", "made")
 
 
-def stillness(dt: float) -> GroundMotion:
+def stillness(dt):
     """No ground motion at all, for free motions that are stored every dt."""
     return ground(np.zeros(2), dt)
 
 
-def let_go(
-    structure: PodiumStructure,
-    rotation: float,
-    seconds: float,
-    dt: float = 0.01,
-    **settings: Any,
-) -> TimeHistoryResult:
+def let_go(structure, rotation, seconds, dt=0.01, **settings):
     """From rest at a tilt, on a ground that stands still."""
     chosen = TimeHistorySettings(
         free_vibration=seconds, initial_rotation=rotation, **settings
@@ -152,9 +126,7 @@ def let_go(
     return time_history(structure, stillness(dt), chosen, with_fixed_base=False)
 
 
-def linear_response(
-    M: Array, C: Array, K: Array, push: Array, a_g: Array, dt: float
-) -> Array:
+def linear_response(M, C, K, push, a_g, dt):
     """Positions and rates, (samples, 2 n), of M u'' + C u' + K u = -push a_g, exact if linear."""
     n = len(M)
     flow = np.eye(2 * n, k=n)
@@ -165,21 +137,13 @@ def linear_response(
     return np.asarray(states).reshape(len(a_g), 2 * n)
 
 
-def part(
-    record: GroundMotion, start: float, seconds: float, factor: float = 1.0
-) -> GroundMotion:
+def part(record, start, seconds, factor=1.0):
     """From an instant on, for a time [s], times a factor."""
     first, count = round(start / record.dt), round(seconds / record.dt) + 1
     return ground(factor * record.acceleration[first : first + count], record.dt)
 
 
-def python(
-    *arguments: str,
-    folder: Path | None = None,
-    exit_code: int = 0,
-    encoding: str = "utf-8",
-    environment: Mapping[str, str] | None = None,
-) -> subprocess.CompletedProcess[str]:
+def python(*arguments, folder=None, exit_code=0, encoding="utf-8", environment=None):
     """Python in another process, which imports the tests as this one does, to its end."""
     here = Path(__file__).parent
     variables = {"PYTHONPATH": os.pathsep.join([str(here), str(here.parent), *sys.path])}
@@ -192,14 +156,12 @@ def python(
     return done
 
 
-def printed_by(*arguments: str, **environment: str) -> str:
+def printed_by(*arguments, **environment):
     """What Python prints in another process."""
     return python(*arguments, environment=environment).stdout
 
 
-def bisected(
-    happens: Callable[[float], bool], low: float, high: float, within: float = 1e-17
-) -> tuple[float, float]:
+def bisected(happens, low, high, within=1e-17):
     """Where something begins to happen: the last number below, and the first beyond."""
     for _ in range(60):
         if high - low > within * high:
@@ -208,7 +170,7 @@ def bisected(
     return low, high
 
 
-def waves(seconds: float, dt: float, peak: float, seed: int) -> GroundMotion:
+def waves(seconds, dt, peak, seed):
     """Twelve sines of 0.4 to 4 Hz with random phases under a rounded envelope."""
     rng = np.random.default_rng(seed)
     t = np.arange(round(seconds / dt) + 1) * dt
@@ -219,14 +181,12 @@ def waves(seconds: float, dt: float, peak: float, seed: int) -> GroundMotion:
     return ground(peak * a / np.max(np.abs(a)), dt)
 
 
-def steps_an_interval(
-    structure: PodiumStructure, dt: float, accuracy: float = 1.0
-) -> int:
+def steps_an_interval(structure, dt, accuracy=1.0):
     """Taylor steps of an uplifted structure in a sampling interval without event."""
     return max(math.ceil(dt * accuracy * uplifted_rate(structure)), 1)
 
 
-def oracle_system(structure: PodiumStructure) -> OracleSystem:
+def oracle_system(structure):
     """The same structure as the second integrator wants it."""
     bearing, above, law = (
         structure.bearing,
@@ -253,7 +213,7 @@ def oracle_system(structure: PodiumStructure) -> OracleSystem:
     )
 
 
-ORACLE_KINDS: dict[type[Device], Callable[..., oracle_kinds.OracleDevice]] = {
+ORACLE_KINDS = {
     ViscousDamper: oracle_kinds.Viscous,
     FrictionDamper: oracle_kinds.Friction,
     Stop: oracle_kinds.Stop,
@@ -261,10 +221,10 @@ ORACLE_KINDS: dict[type[Device], Callable[..., oracle_kinds.OracleDevice]] = {
 }
 
 
-def oracle_devices(structure: PodiumStructure) -> tuple[oracle_kinds.OracleDevice, ...]:
+def oracle_devices(structure):
     """Its devices as the second integrator wants them."""
 
-    def other(device: Device) -> oracle_kinds.OracleDevice:
+    def other(device):
         if isinstance(device, Tendon):
             return oracle_kinds.Tendon(structure.columns, *astuple(device))
         return ORACLE_KINDS[type(device)](*astuple(device))

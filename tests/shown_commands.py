@@ -4,18 +4,15 @@ A page is a document, a file with comments, or a workflow. `rps_lines` and `of_t
 read its commands, `run` runs one, and `PAGES` says where: nothing that is shown may be missing.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import shlex
 import subprocess
 import sys
-from collections.abc import Iterable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from click.testing import CliRunner, Result
+from click.testing import CliRunner
 
 from rpscli.cli import program
 
@@ -103,14 +100,14 @@ class Block(NamedTuple):
     text: str
 
 
-def blocks(document: Path) -> list[Block]:
+def blocks(document):
     fences = re.findall(
         r"^```(\w*)\n(.*?)^```$", document.read_text("utf-8"), re.MULTILINE | re.DOTALL
     )
     return [Block(*fence) for fence in fences]
 
 
-def of_blocks(document: Path, language: str = "sh") -> list[str]:
+def of_blocks(document, language="sh"):
     """Lines of its blocks in a language."""
     return [
         of
@@ -120,12 +117,12 @@ def of_blocks(document: Path, language: str = "sh") -> list[str]:
     ]
 
 
-def rps_lines(page: Path) -> list[str]:
+def rps_lines(page):
     """Lines of its blocks that begin with `rps`."""
     return [line for line in of_blocks(page) if line.startswith("rps ")]
 
 
-def of_texts(page: Path) -> list[str]:
+def of_texts(page):
     """`rps` commands with arguments that stand in sentences, comments or steps of a workflow."""
     text = page.read_text("utf-8")
     if page.suffix == ".md":
@@ -146,7 +143,7 @@ def of_texts(page: Path) -> list[str]:
     return [line for line in named if "=" not in line.split()[1]]
 
 
-def pages() -> dict[str, Path]:
+def pages():
     """Whatever may show commands, by its place."""
     found = [
         *ROOT.glob("*.md"),
@@ -172,7 +169,7 @@ class Command(NamedTuple):
     exit_code: int
 
 
-def command(line: str) -> Command:
+def command(line):
     announced = re.search(r"#.*\bexit code (\d+)", line)
     for word, value in STANDS_FOR.items():
         line = re.sub(rf"(?<=[ ']){re.escape(word)}(?= |$)", value, line)
@@ -180,12 +177,12 @@ def command(line: str) -> Command:
     return Command(words, int(announced[1]) if announced else 0)
 
 
-def run(line: str) -> Result:
+def run(line):
     """A line with `rps`, in the working folder."""
     return CliRunner().invoke(program, command(line).words)
 
 
-def run_all(lines: Iterable[str]) -> dict[str, str]:
+def run_all(lines):
     """Run lines one after another; what each of them printed."""
     outputs = {}
     for line in lines:
@@ -195,7 +192,7 @@ def run_all(lines: Iterable[str]) -> dict[str, str]:
     return outputs
 
 
-def run_in_shell(line: str, **variables: str) -> str:
+def run_in_shell(line, **variables):
     """Any other line, with the Python that runs the tests; what it printed."""
     path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
     environment = {**os.environ, "PATH": path, "PYTHONPATH": str(ROOT), **variables}
@@ -206,7 +203,7 @@ def run_in_shell(line: str, **variables: str) -> str:
     return done.stdout
 
 
-def shown_outputs(document: Iterable[Block]) -> list[tuple[str, str]]:
+def shown_outputs(document):
     """Each output that is shown, and the command before it."""
     found, last = [], ""
     for block in document:
@@ -217,7 +214,7 @@ def shown_outputs(document: Iterable[Block]) -> list[tuple[str, str]]:
     return found
 
 
-def not_printed(shown: str, output: str) -> list[str]:
+def not_printed(shown, output):
     """Lines that are shown and not printed, whatever the spaces between their columns.
 
     Columns are as wide as their widest number, of which the residual's has the digits of rounding.
@@ -226,7 +223,7 @@ def not_printed(shown: str, output: str) -> list[str]:
     return [row for row in shown.splitlines() if " ".join(row.split()) not in printed]
 
 
-def table(document: Path, below: str) -> list[list[str]]:
+def table(document, below):
     """Cells of the first table below some words: those of its head, then its rows."""
     rows = (
         document.read_text("utf-8")
@@ -241,7 +238,7 @@ def table(document: Path, below: str) -> list[list[str]]:
 NUMBER = re.compile(r"(?<![\w.])(?:(?<![\d-])[-+])?(?:\d+\.?\d*|\.\d+)(?:e-?\d+)?")
 
 
-def told(document: Path, after: str, *computed: Any) -> None:
+def told(document, after, *computed):
     """The numbers that follow some words, with "..." between them, are these, as far as shown."""
     text = " ".join(document.read_text("utf-8").split())
     for words in after.split(" ... "):

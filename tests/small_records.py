@@ -1,22 +1,15 @@
 """Small files in the layouts of the agencies."""
 
-from __future__ import annotations
-
-from collections.abc import Sequence
-from pathlib import Path
-
 VALUES = [1.5, -2.25, 30.125, -4.5, 5.0, 6.0, -7.0, 8.0, 9.0, -10.0, 11.0, 12.0]
 PEAK = 30.125
 
 
-def fixed(values: Sequence[float], width: int, form: str) -> str:
+def fixed(values, width, form):
     cells = [form.format(value) for value in values]
     return "\n".join("".join(cells[i : i + width]) for i in range(0, len(cells), width))
 
 
-def csmip(
-    channels: tuple[int, ...] = (1,), peak: float = PEAK, names: tuple[str, ...] = ()
-) -> str:
+def csmip(channels=(1,), peak=PEAK, names=()):
     text = []
     for number, name in zip(channels, names or ["90 DEG"] * len(channels), strict=True):
         body = fixed([VALUES[0] + number - channels[0], *VALUES[1:]], 8, "{:10.3f}")
@@ -40,7 +33,7 @@ def csmip(
     return "\n".join(text) + "\n\x1a\x1a"
 
 
-def cosmos(title: str = "Corrected acceleration", interval: float = 20.0) -> str:
+def cosmos(title="Corrected acceleration", interval=20.0):
     reals = [-999.0] * 100
     reals[33], reals[61], reals[63] = 0.005, interval, -PEAK
     return "\n".join(
@@ -68,7 +61,7 @@ def cosmos(title: str = "Corrected acceleration", interval: float = 20.0) -> str
     )
 
 
-def knet() -> str:
+def knet():
     counts = [round(value * 1000) + 7000 for value in VALUES]
     peak = max(abs(count - sum(counts) / 12) for count in counts) / 1000
     return "\n".join(
@@ -91,7 +84,7 @@ def knet() -> str:
     )
 
 
-def esm(kind: str = "ACCELERATION", count: int = 12, units: str = "cm/s^2") -> str:
+def esm(kind="ACCELERATION", count=12, units="cm/s^2"):
     header = [
         "EVENT_NAME: AN EVENT",
         "EVENT_DATE_YYYYMMDD: 20190728",
@@ -111,7 +104,7 @@ def esm(kind: str = "ACCELERATION", count: int = 12, units: str = "cm/s^2") -> s
     return "\n".join([*header, *(f"{value:.6f}" for value in VALUES)])
 
 
-def smc(title: str = "2 CORRECTED ACCELEROGRAM") -> str:
+def smc(title="2 CORRECTED ACCELEROGRAM"):
     integers = [-32768] * 48
     integers[15], integers[16] = 2, 12
     reals = [1.7e38] * 50
@@ -138,7 +131,7 @@ def smc(title: str = "2 CORRECTED ACCELEROGRAM") -> str:
     )
 
 
-def geonet(components: tuple[str, ...] = ("S16W",)) -> str:
+def geonet(components=("S16W",)):
     text = []
     for component in components:
         text += [
@@ -165,6 +158,6 @@ def geonet(components: tuple[str, ...] = ("S16W",)) -> str:
     return "\n".join(text)
 
 
-def write(folder: Path, text: str, name: str) -> str:
+def write(folder, text, name):
     (folder / name).write_bytes(text.replace("\n", "\r\n").encode("latin-1"))
     return str(folder / name)

@@ -3,13 +3,10 @@
 Public is what `import rpscli` offers; elsewhere a line with shapes and units is enough.
 """
 
-from __future__ import annotations
-
 import ast
 import doctest
 import importlib
 import re
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -27,7 +24,7 @@ WITH_EXAMPLES = [
 @pytest.mark.parametrize(
     "path", WITH_EXAMPLES, ids=lambda path: str(path.relative_to(ROOT))
 )
-def test_examples(path: Path) -> None:
+def test_examples(path):
     """Of whatever has a docstring: doctest itself finds none of cached properties."""
     text = path.read_text(encoding="utf-8")
     name = ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(
@@ -51,7 +48,7 @@ HEAD = re.compile(r"(\w+(?:, \w+)*)(?: : .+)?")
 """Names of a section, and beside them perhaps a type."""
 
 
-def described(docstring: str | None) -> set[str]:
+def described(docstring):
     """The names that Parameters or Attributes describe, with a line about them below."""
     lines = (docstring or "").splitlines()
     names, inside = set[str](), False
@@ -63,7 +60,7 @@ def described(docstring: str | None) -> set[str]:
     return names
 
 
-def public(body: list[ast.stmt]) -> Iterator[ast.FunctionDef | ast.ClassDef]:
+def public(body):
     for node in body:
         if isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith(
             "_"
@@ -73,13 +70,13 @@ def public(body: list[ast.stmt]) -> Iterator[ast.FunctionDef | ast.ClassDef]:
                 yield from public(node.body)
 
 
-def arguments(function: ast.FunctionDef) -> list[str]:
+def arguments(function):
     given = function.args
     names = [one.arg for one in given.posonlyargs + given.args + given.kwonlyargs]
     return [name for name in names if name not in {"self", "cls"}]
 
 
-def fields(body: list[ast.stmt]) -> tuple[list[str], set[str]]:
+def fields(body):
     """Names of the fields, and those with a docstring of their own."""
     names, explained = list[str](), set[str]()
     for node, below in zip(body, [*body[1:], ast.Pass()], strict=True):
@@ -90,7 +87,7 @@ def fields(body: list[ast.stmt]) -> tuple[list[str], set[str]]:
     return names, explained
 
 
-def unexplained(node: ast.FunctionDef | ast.ClassDef, standing: set[str]) -> set[str]:
+def unexplained(node, standing):
     known = described(ast.get_docstring(node))
     if isinstance(node, ast.FunctionDef):
         names, known = arguments(node), known | standing
@@ -101,7 +98,7 @@ def unexplained(node: ast.FunctionDef | ast.ClassDef, standing: set[str]) -> set
     return open_to_all - known if len(names) > 1 else set()
 
 
-def shared(node: ast.FunctionDef | ast.ClassDef) -> set[str]:
+def shared(node):
     """Arguments of the methods of a class, which are not its fields."""
     if isinstance(node, ast.FunctionDef):
         return set()
@@ -111,11 +108,11 @@ def shared(node: ast.FunctionDef | ast.ClassDef) -> set[str]:
     )
 
 
-def parsed(file: Path) -> ast.Module:
+def parsed(file):
     return ast.parse(file.read_text(encoding="utf-8"))
 
 
-def public_nodes() -> Iterator[tuple[str, ast.FunctionDef | ast.ClassDef, set[str]]]:
+def public_nodes():
     """What `import rpscli` offers, with its modules.
 
     Beside each stand the names that its class explains for all its methods.
@@ -133,7 +130,7 @@ def public_nodes() -> Iterator[tuple[str, ast.FunctionDef | ast.ClassDef, set[st
                     yield module, each, described(ast.get_docstring(node)) & shared(node)
 
 
-def test_arguments_and_fields_are_explained() -> None:
+def test_arguments_and_fields_are_explained():
     missing = {
         f"{module}: {node.name}": names
         for module, node, standing in public_nodes()

@@ -1,15 +1,11 @@
 """What `import rpscli` offers gives no array that can be written to, in copies either."""
 
-from __future__ import annotations
-
 import copy
 import inspect
 import pickle
-from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cache, cached_property
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -31,15 +27,15 @@ STUDY = {
 
 
 @cache
-def history() -> rpscli.TimeHistoryResult:
+def history():
     return rpscli.time_history(STRUCTURE, RECORD)
 
 
-def study() -> rpscli.StudyResult:
+def study():
     return rpscli.load_study(STUDY).run(jobs=1)
 
 
-OBJECTS: dict[str, Callable[[], Any]] = {
+OBJECTS = {
     "Bearing": lambda: STRUCTURE.bearing,
     "Case": lambda: rpscli.load_case("cases/six_storey.yaml"),
     "Demand": lambda: rpscli.demand(STRUCTURE, RECORD),
@@ -70,7 +66,7 @@ OTHER = {
 """They give objects of the classes above, texts, or an array that nobody else knows."""
 
 
-def parts(value: Any, name: str, seen: dict[int, Any]) -> Iterator[tuple[str, Any]]:
+def parts(value, name, seen):
     """All arrays inside, by the way to them: fields, properties, what is cached."""
     if isinstance(value, np.ndarray | np.void):
         yield name, value
@@ -96,20 +92,20 @@ def parts(value: Any, name: str, seen: dict[int, Any]) -> Iterator[tuple[str, An
             yield from parts(part, f"{name}.{attribute}", seen)
 
 
-def pickled(value: Any) -> Any:
+def pickled(value):
     return pickle.loads(pickle.dumps(value))  # noqa: S301
 
 
-def writable(value: Any) -> set[str]:
+def writable(value):
     return {name for name, array in parts(value, "", {}) if array.flags.writeable}
 
 
-def test_nothing_that_is_offered_is_forgotten() -> None:
+def test_nothing_that_is_offered_is_forgotten():
     assert set(rpscli.__all__) == OBJECTS.keys() | OTHER
 
 
 @pytest.mark.parametrize("name", OBJECTS)
-def test_arrays_are_read_only_in_copies_too(name: str) -> None:
+def test_arrays_are_read_only_in_copies_too(name):
     made = OBJECTS[name]()
     assert not writable(made)
     if name not in {
@@ -121,14 +117,14 @@ def test_arrays_are_read_only_in_copies_too(name: str) -> None:
             assert not writable(again)
 
 
-def test_periods_of_the_user_stay_the_users() -> None:
+def test_periods_of_the_user_stay_the_users():
     periods = np.array([0.5, 1.0])
     rpscli.isolated_floor_spectra(history(), periods)
     periods *= 2.0
     assert periods.tolist() == [1.0, 2.0]
 
 
-def test_masked_samples_are_refused() -> None:
+def test_masked_samples_are_refused():
     gap = np.ma.array([0.0, 999.0, 1.0], mask=[False, True, False])
     with pytest.raises(RecordError, match=r"sample 2 is masked, a gap; fill it"):
         rpscli.GroundMotion(gap, 0.1)

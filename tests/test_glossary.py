@@ -1,7 +1,5 @@
 """One word for one thing: labels of tables and figures are words of the glossary."""
 
-from __future__ import annotations
-
 import re
 
 import pytest
@@ -38,14 +36,14 @@ LABELS = sorted(
 
 
 @pytest.mark.parametrize("label", LABELS)
-def test_labels_are_made_of_words_of_the_glossary(label: str) -> None:
+def test_labels_are_made_of_words_of_the_glossary(label):
     words = EXPLAINED | PLAIN
     assert any(
         re.search(rf"\b{re.escape(word)}(s|es)?\b", label.lower()) for word in words
     )
 
 
-def test_outcomes_are_explained_with_the_sentences_that_are_printed() -> None:
+def test_outcomes_are_explained_with_the_sentences_that_are_printed():
     entries = [entry for entry, _ in glossary()]
     for outcome in (*OUTCOMES.values(), "failed"):
         (entry,) = (entry for entry in entries if outcome in re.split(r", | \(", entry))
@@ -54,7 +52,7 @@ def test_outcomes_are_explained_with_the_sentences_that_are_printed() -> None:
         )
 
 
-def test_no_word_is_explained_twice() -> None:
+def test_no_word_is_explained_twice():
     words = [part.strip() for entry, _ in glossary() for part in entry.split(",")]
     assert len(words) == len(set(words))
     assert not any("|" in meaning for _, meaning in glossary())  # two rows in one line

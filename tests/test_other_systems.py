@@ -5,8 +5,6 @@ locks of folders in `report.files`, of stores in `sweep.store`, Ctrl-C in `sweep
 and encodings of files in `case.text.files`, those of the console in `commands.shell.terminal`.
 """
 
-from __future__ import annotations
-
 import errno
 import os
 import re
@@ -56,7 +54,7 @@ SEAMS = {
 """What is not the same everywhere, and the only files that may name it."""
 
 
-def rps(*words: str, exit_code: int = 0) -> str:
+def rps(*words, exit_code=0):
     """What a command prints, which ends with this exit code."""
     result = CliRunner().invoke(program, words)
     assert result.exit_code == exit_code, result.output
@@ -64,7 +62,7 @@ def rps(*words: str, exit_code: int = 0) -> str:
 
 
 @pytest.fixture
-def windows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def windows(tmp_path, monkeypatch):
     """What Python has on Linux alone, or not on Windows, is not there."""
     for name in (
         "fork",
@@ -84,8 +82,8 @@ def windows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     )  # as its first line says there
 
 
-def test_what_differs_between_systems_is_named_in_one_place() -> None:
-    found: dict[str, set[str]] = {name: set() for name in SEAMS}
+def test_what_differs_between_systems_is_named_in_one_place():
+    found = {name: set() for name in SEAMS}
     for path in SOURCES:
         for name in re.findall(
             rf"(?:import |\.)({'|'.join(SEAMS)})\b", path.read_text("utf-8")
@@ -95,9 +93,7 @@ def test_what_differs_between_systems_is_named_in_one_place() -> None:
 
 
 @pytest.mark.usefixtures("windows")
-def test_commands_run_as_on_windows(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_commands_run_as_on_windows(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "study.yaml").write_text(STUDY, encoding="utf-8")
     none = ("--figures", "none")
@@ -113,9 +109,7 @@ def test_commands_run_as_on_windows(
     assert available_cores() == os.cpu_count()
 
 
-def test_windows_asks_for_no_owner(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_windows_asks_for_no_owner(tmp_path, monkeypatch):
     tmp_path.chmod(0o777)
     with monkeypatch.context() as patch:
         patch.setattr(os, "name", "nt")
@@ -125,8 +119,8 @@ def test_windows_asks_for_no_owner(
 @pytest.mark.parametrize("system", ["linux", "darwin", "win32"])
 @pytest.mark.parametrize("home", ["home", "~"])
 def test_homes_get_no_folders_of_names_that_nobody_uses(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, system: str, home: str
-) -> None:
+    tmp_path, monkeypatch, system, home
+):
     """In containers users may have no home: then Python leaves the `~` in a path."""
     for variable in (
         user_cache.VARIABLE,
@@ -158,10 +152,8 @@ def test_homes_get_no_folders_of_names_that_nobody_uses(
 
 
 @pytest.mark.parametrize("number", [errno.ENOLCK, errno.EOPNOTSUPP])
-def test_folders_that_cannot_be_locked_are_written_to(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int
-) -> None:
-    def refuse(*_: object) -> None:
+def test_folders_that_cannot_be_locked_are_written_to(tmp_path, monkeypatch, number):
+    def refuse(*_):
         raise OSError(number, os.strerror(number))
 
     fcntl = pytest.importorskip("fcntl")
@@ -171,13 +163,11 @@ def test_folders_that_cannot_be_locked_are_written_to(
     assert (tmp_path / "new" / "a.txt").read_bytes() == b"a"
 
 
-def test_a_file_that_another_program_holds_open_is_named(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_file_that_another_program_holds_open_is_named(tmp_path, monkeypatch):
     """Windows replaces no file that a spreadsheet shows."""
     (tmp_path / "table.csv").write_bytes(b"old")
 
-    def refuse(self: Path, _: Path) -> None:
+    def refuse(self, _):
         raise PermissionError(errno.EACCES, "Access is denied", str(self))
 
     monkeypatch.setattr(Path, "replace", refuse)
@@ -203,10 +193,8 @@ def test_a_file_that_another_program_holds_open_is_named(
         (sqlite3.SQLITE_BUSY, "is in use"),
     ],
 )
-def test_stores_in_network_folders_say_what_is_wrong(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, code: int, told: str
-) -> None:
-    def refuse(*_: object, **__: object) -> None:
+def test_stores_in_network_folders_say_what_is_wrong(tmp_path, monkeypatch, code, told):
+    def refuse(*_, **__):
         error = sqlite3.OperationalError("as the file system says")
         error.sqlite_errorcode = code
         raise error
@@ -217,11 +205,11 @@ def test_stores_in_network_folders_say_what_is_wrong(
     assert "another folder with -o" in str(raised.value)
 
 
-def test_ctrl_c_is_left_alone_outside_the_main_thread() -> None:
+def test_ctrl_c_is_left_alone_outside_the_main_thread():
     """Notebooks and servers run studies in threads, where no signal may be set."""
     before, seen = signal.getsignal(signal.SIGINT), list[Any]()
 
-    def work() -> None:
+    def work():
         with first_interrupt(lambda: None) as event:
             seen.append(event.is_set())
 
@@ -233,9 +221,7 @@ def test_ctrl_c_is_left_alone_outside_the_main_thread() -> None:
 
 
 @pytest.mark.parametrize("encoding", ["cp1252", "cp866"])
-def test_consoles_that_are_not_utf_8_show_all_that_they_can(
-    tmp_path: Path, encoding: str
-) -> None:
+def test_consoles_that_are_not_utf_8_show_all_that_they_can(tmp_path, encoding):
     """Lines of tables, Greek letters and Cyrillic titles: what cannot be shown becomes `?`."""
     text = (ROOT / "cases" / "free_standing_block.yaml").read_text("utf-8")
     (tmp_path / "блок.yaml").write_text(
@@ -248,7 +234,7 @@ def test_consoles_that_are_not_utf_8_show_all_that_they_can(
     assert "peak acceleration 4.413 m/s2" in " ".join(shown.split())
 
 
-def test_no_file_is_read_or_written_in_the_encoding_of_the_system(tmp_path: Path) -> None:
+def test_no_file_is_read_or_written_in_the_encoding_of_the_system(tmp_path):
     """On Windows it is none that has all letters."""
     script = """
 import sys, warnings
@@ -271,9 +257,7 @@ for line in sys.argv[1:]:
     "name",
     ["with blanks and (brackets)", "каталог с пробелами", "o'quote & co", "深い" * 10],
 )
-def test_folders_of_any_name_hold_cases_and_results(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
-) -> None:
+def test_folders_of_any_name_hold_cases_and_results(tmp_path, monkeypatch, name):
     folder = tmp_path / name
     folder.mkdir()
     monkeypatch.chdir(folder)
@@ -294,9 +278,7 @@ def test_folders_of_any_name_hold_cases_and_results(
 
 
 @pytest.mark.parametrize("silent", [False, True])
-def test_a_path_that_is_too_long_is_named(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, silent: bool
-) -> None:
+def test_a_path_that_is_too_long_is_named(tmp_path, monkeypatch, *, silent):
     """Also where paths keep to themselves what the system refuses, as from Python 3.14 on."""
     if silent:
         for asked in ("exists", "is_file", "is_dir"):
@@ -322,7 +304,7 @@ def test_a_path_that_is_too_long_is_named(
         f"{ROOT}/cases/records/synthetic_far_field.at2?factor=2",
     ],
 )
-def test_folders_of_records_have_names_that_windows_allows(source: str) -> None:
+def test_folders_of_records_have_names_that_windows_allows(source):
     name = load_record(source).name
     assert not set('<>:"/\\|?*') & set(name)
     assert name == name.strip(". ")

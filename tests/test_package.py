@@ -1,7 +1,5 @@
 """What the package says of itself: requirements, links, evidence, and what a release needs."""
 
-from __future__ import annotations
-
 import re
 import runpy
 import subprocess
@@ -10,7 +8,6 @@ import tomllib
 from itertools import accumulate
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
 
 import pytest
 import yaml
@@ -19,17 +16,17 @@ from evidence import DOCUMENT, with_table
 from rpscli.version import VERSION
 
 ROOT = Path(__file__).parents[1]
-PROJECT: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
 RECIPE = yaml.safe_load((ROOT / ".ci/conda/recipe.yaml").read_text("utf-8"))
 WORKFLOWS = sorted((ROOT / ".github/workflows").glob("*.yml"))
 
 
-def bounds(requirements: list[str]) -> dict[str, str]:
+def bounds(requirements):
     found = [re.split(r" ?>=", each) for each in requirements]
     return {name.replace("matplotlib-base", "matplotlib"): bound for name, bound in found}
 
 
-def test_the_conda_recipe_is_of_this_version_with_the_same_requirements() -> None:
+def test_the_conda_recipe_is_of_this_version_with_the_same_requirements():
     assert RECIPE["context"]["version"] == VERSION
     _, *run = RECIPE["requirements"]["run"]  # Python first
     assert bounds(run) == bounds(PROJECT["project"]["dependencies"])
@@ -40,7 +37,7 @@ def test_the_conda_recipe_is_of_this_version_with_the_same_requirements() -> Non
     assert scripts == PROJECT["project"]["scripts"]
 
 
-def test_the_lock_has_what_the_project_needs() -> None:
+def test_the_lock_has_what_the_project_needs():
     text = (ROOT / ".ci/lock.txt").read_text("utf-8")
     locked = dict(re.findall(r"^([\w.-]+)==([\w.]+)", text, re.MULTILINE))
     wanted = bounds(
@@ -56,7 +53,7 @@ def test_the_lock_has_what_the_project_needs() -> None:
     assert low == {}
 
 
-def test_every_action_is_pinned_and_every_workflow_has_few_permissions() -> None:
+def test_every_action_is_pinned_and_every_workflow_has_few_permissions():
     for path in WORKFLOWS:
         text = path.read_text("utf-8")
         uses = re.findall(r"uses: (\S+)(.*)", text)
@@ -78,7 +75,7 @@ def test_every_action_is_pinned_and_every_workflow_has_few_permissions() -> None
 
 
 @pytest.mark.posix
-def test_what_is_not_ready_is_not_published() -> None:
+def test_what_is_not_ready_is_not_published():
     """As it stands the owner of the repository is to be named, and the changelog to be dated."""
     refused = subprocess.run(
         [ROOT / ".ci/package", "--publishable", "v9.9", "somebody/rps"],
@@ -90,9 +87,7 @@ def test_what_is_not_ready_is_not_published() -> None:
     assert f"the tag v9.9 is not that of version {VERSION}" in refused.stderr
 
 
-def test_links_of_the_readme_lead_to_the_repository(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_links_of_the_readme_lead_to_the_repository(monkeypatch):
     # What builds the package is not among what tests need.
     base = SimpleNamespace(MetadataHookInterface=object)
     parts = ("hatchling", "metadata", "plugin", "interface")
@@ -100,7 +95,7 @@ def test_links_of_the_readme_lead_to_the_repository(
         monkeypatch.setitem(sys.modules, name, base)
     space = runpy.run_path(str(ROOT / ".ci/readme.py"))
     source = PROJECT["project"]["urls"]["Source"]
-    metadata: dict[str, Any] = {"urls": {"Source": source}, "version": VERSION}
+    metadata = {"urls": {"Source": source}, "version": VERSION}
     readme = space["Readme"]()
     readme.root = str(ROOT)
     readme.update(metadata)
@@ -117,6 +112,6 @@ def test_links_of_the_readme_lead_to_the_repository(
         assert here == link or (ROOT / here.partition("#")[0]).exists()
 
 
-def test_the_table_is_what_the_marks_say() -> None:
+def test_the_table_is_what_the_marks_say():
     text = DOCUMENT.read_text(encoding="utf-8")
     assert with_table(text) == text, "write it again: cd tests; python -m evidence"

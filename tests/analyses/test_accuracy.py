@@ -3,14 +3,12 @@
 Single histories under recorded earthquakes are those of the second integrator.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from oracles.test_second_integrator import ROWS, Row
-from paper_structures import Array, RecordLoader, needs_compiled_kernels, podium
+from oracles.test_second_integrator import ROWS
+from paper_structures import needs_compiled_kernels, podium
 
 from rpscli.analyses.demand import demand
 from rpscli.analyses.settings import TimeHistorySettings
@@ -23,7 +21,7 @@ ACCURATE = 1e-4
 """Relative error of the largest rotation below which a history counts as accurate."""
 
 
-def errors(seeds: range, seconds: int) -> Array:
+def errors(seeds, seconds):
     """Errors of the default step against one sixteenth of it; overturned histories left out."""
     found = []
     for seed in seeds:
@@ -41,7 +39,7 @@ def errors(seeds: range, seconds: int) -> Array:
 
 
 @pytest.mark.evidence("steps, events, energy", "exact")
-def test_nine_of_ten_short_histories_are_accurate() -> None:
+def test_nine_of_ten_short_histories_are_accurate():
     share = errors(range(3), 10)
     assert len(share) > 20
     assert np.mean(share < ACCURATE) >= 0.9
@@ -49,7 +47,7 @@ def test_nine_of_ten_short_histories_are_accurate() -> None:
 
 @pytest.mark.evidence("steps, events, energy", "exact")
 @pytest.mark.long
-def test_93_of_100_long_histories_are_accurate() -> None:
+def test_93_of_100_long_histories_are_accurate():
     share = errors(range(20), 30)
     assert len(share) > 100
     assert np.mean(share < ACCURATE) >= 0.93
@@ -57,7 +55,7 @@ def test_93_of_100_long_histories_are_accurate() -> None:
 
 @pytest.mark.evidence("buildings on bearings under earthquakes", "program")
 @pytest.mark.parametrize("row", ROWS, ids=str)
-def test_converged_histories(row: Row, fema_record: RecordLoader) -> None:
+def test_converged_histories(row, fema_record):
     structure = podium(row.storeys, row.tan_alpha, row.rho)
     record = fema_record(row.record)
     usual = TimeHistorySettings(free_vibration=10.0)

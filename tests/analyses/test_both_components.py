@@ -1,7 +1,5 @@
 """What is read off a history under both horizontal components."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 
@@ -11,13 +9,11 @@ from paper_structures import building, known, needs_compiled_kernels, podium, wa
 
 from rpscli.analyses.column_forces import no_bound
 from rpscli.analyses.fixed_base import fixed_base_response
-from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.analyses.trace import sampled
 from rpscli.errors import CaseError
 from rpscli.model.impact import ImpactLaw
-from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.report.bundles import event_columns, history_columns
 from rpscli.report.files import json_text
@@ -29,7 +25,7 @@ DT = 0.01
 BUILDING = replace(podium(3), impact_law=ImpactLaw("flexible"))
 
 
-def wave(period: float, size: float, seconds: float = 4.0) -> GroundMotion:
+def wave(period, size, seconds=4.0):
     t = np.arange(round(seconds / DT) + 1) * DT
     fade = np.minimum(1.0, 2.0 * (seconds - t) / seconds)
     return GroundMotion(
@@ -38,17 +34,17 @@ def wave(period: float, size: float, seconds: float = 4.0) -> GroundMotion:
 
 
 @pytest.fixture(scope="module")
-def motion() -> MotionComponents:
+def motion():
     return MotionComponents(wave(0.9, 3.5), wave(0.3, 1.0), y=wave(0.62, 3.0))
 
 
 @pytest.fixture(scope="module")
-def result(motion: MotionComponents) -> TimeHistoryResult:
+def result(motion):
     return time_history(BUILDING, motion, TimeHistorySettings(free_vibration=2.0))
 
 
 @pytest.mark.evidence("both components", "exact")
-def test_the_energies_balance_at_every_sample(result: TimeHistoryResult) -> None:
+def test_the_energies_balance_at_every_sample(result):
     # Those put in, damped and lost are the kernel's; what is stored follows from the samples.
     t = result.trace
     stored = t.energy_input - t.energy_damped - t.energy_impact
@@ -57,7 +53,7 @@ def test_the_energies_balance_at_every_sample(result: TimeHistoryResult) -> None
     assert np.max(np.abs(t.energy_stored - stored)) < 1e-6 * np.max(t.energy_input)
 
 
-def test_samples_do_not_exceed_the_largest_values(result: TimeHistoryResult) -> None:
+def test_samples_do_not_exceed_the_largest_values(result):
     t, y = result.trace, known(result.trace.y)
     for name, largest in (
         ("cap_beam_displacement", result.max_cap_beam_displacement),
@@ -85,9 +81,7 @@ def test_samples_do_not_exceed_the_largest_values(result: TimeHistoryResult) -> 
 
 
 @pytest.mark.evidence("both components", "exact")
-def test_a_turned_pair_turns_results(
-    result: TimeHistoryResult, motion: MotionComponents
-) -> None:
+def test_a_turned_pair_turns_results(result, motion):
     other = time_history(BUILDING, motion.turned(30.0), result.settings)
     assert other.max_rotation == pytest.approx(result.max_rotation, rel=1e-9)
     assert other.max_base_shear == pytest.approx(result.max_base_shear, rel=1e-9)
@@ -101,7 +95,7 @@ def test_a_turned_pair_turns_results(
     assert turned.base_shear == pytest.approx(one.base_shear, rel=1e-6)
 
 
-def test_a_fixed_base_under_equal_components_has_sqrt_2_of_one() -> None:
+def test_a_fixed_base_under_equal_components_has_sqrt_2_of_one():
     one = wave(0.5, 2.0)
     alone = fixed_base_response(BUILDING, MotionComponents(one), 500)
     both = fixed_base_response(BUILDING, MotionComponents(one, y=one), 500)
@@ -111,7 +105,7 @@ def test_a_fixed_base_under_equal_components_has_sqrt_2_of_one() -> None:
         assert getattr(both, name) == pytest.approx(exact, rel=3e-3)
 
 
-def test_files_have_both_directions(result: TimeHistoryResult) -> None:
+def test_files_have_both_directions(result):
     names = [name for name, *_ in sampled(result.structure, result.trace)]
     assert names == [column.name for column in history_columns(result)]
     for name in ("azimuth", "rotation_y", "floor_3_acceleration_y", "storey_1_shear_x"):
@@ -128,28 +122,28 @@ def test_files_have_both_directions(result: TimeHistoryResult) -> None:
         assert document[name] == getattr(result, name)
 
 
-def test_floor_spectra_of_both_are_refused(result: TimeHistoryResult) -> None:
+def test_floor_spectra_of_both_are_refused(result):
     from rpscli.analyses.floor_spectra import isolated_floor_spectra
 
     with pytest.raises(CaseError, match=r"without \?both"):
         isolated_floor_spectra(result)
 
 
-def on_floors(period: float | None, contact_time: float = 2e-3) -> PodiumStructure:
+def on_floors(period, contact_time=2e-3):
     above = replace(building(2, 0.4), vertical_period=period)
     law = ImpactLaw("flexible", contact_time=contact_time)
     return podium(2, 0.15, 0.5, superstructure=above, law=law)
 
 
 @pytest.mark.evidence("forces in columns, friction", "exact")
-def test_largest_forces_hardly_depend_on_the_contact_time() -> None:
+def test_largest_forces_hardly_depend_on_the_contact_time():
     """With the smooth motion's alone, passes of .5 ms asked for several times the weight.
 
     Medians of 22 recorded pairs move by 7 %; of eight motions chaos leaves more.
     """
     settings = TimeHistorySettings(free_vibration=1.0)
 
-    def median(contact_time: float, period: float | None) -> float:
+    def median(contact_time, period):
         of = on_floors(period, contact_time)
         weight = of.gravity * (
             of.cap_beam_mass + of.superstructure_mass + of.columns_mass
@@ -173,7 +167,7 @@ def test_largest_forces_hardly_depend_on_the_contact_time() -> None:
 
 
 @pytest.mark.evidence("forces in columns, friction", "exact")
-def test_limits_are_refused_for_what_is_left_out() -> None:
+def test_limits_are_refused_for_what_is_left_out():
     known, unknown = on_floors(0.1), on_floors(None)
     assert "passes shorter than 25 ms (superstructure.vertical_period)" in no_bound(
         "max_column_shear", unknown

@@ -1,7 +1,5 @@
 """What the most loaded column carries in a history: by hand, in the plane and in space."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -20,7 +18,6 @@ from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import denser_trace, time_history
 from rpscli.model.column import ColumnDesign
 from rpscli.model.impact import ImpactLaw
-from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import MotionComponents
 
 SQUARE = ColumnDesign("square", 35e9, 0.2, 25e6, edge_length=0.45)
@@ -28,11 +25,11 @@ ROUND = ColumnDesign("round", 35e9, 0.2, 25e6)
 AT_ONCE = TimeHistorySettings(free_vibration=0.0)
 
 
-def frame(rho: float, design: ColumnDesign) -> PodiumStructure:
+def frame(rho, design):
     return replace(podium(0, 0.15, rho), columns=4, column=design)
 
 
-def designed(rho: float = 0.5) -> PodiumStructure:
+def designed(rho=0.5):
     heights = np.full(2, 3.0)
     above = replace(building(2, 0.4), vertical_period=0.1, storey_heights=heights)
     of = podium(2, 0.15, rho, superstructure=above, law=ImpactLaw())
@@ -41,7 +38,7 @@ def designed(rho: float = 0.5) -> PodiumStructure:
 
 @pytest.mark.evidence("forces in columns, friction", "exact")
 @pytest.mark.parametrize("pair", [False, True])
-def test_upright_columns_share_the_moment_of_the_shears(pair: bool) -> None:
+def test_upright_columns_share_the_moment_of_the_shears(pair):
     """1 m/s2 on a beam and columns of 200 and 20 t: H (50 + 55 kN) at both ends, as 200 to 220."""
     of = frame(0.5, ROUND)
     push = ground([0.0, 1.0, 0.0], 0.1)
@@ -60,7 +57,7 @@ def test_upright_columns_share_the_moment_of_the_shears(pair: bool) -> None:
 
 @needs_compiled_kernels
 @pytest.mark.evidence("forces in columns, friction", "exact")
-def test_flat_ends_turn_the_force_at_their_edge_into_moment() -> None:
+def test_flat_ends_turn_the_force_at_their_edge_into_moment():
     of = frame(0.0, SQUARE)
     result = time_history(of, waves(4.0, 0.01, 4.0, seed=1), AT_ONCE)
     t, b = denser_trace(result, 5e-4), of.bearing
@@ -80,7 +77,7 @@ def test_flat_ends_turn_the_force_at_their_edge_into_moment() -> None:
 
 @needs_compiled_kernels
 @pytest.mark.evidence("forces in columns, friction", "exact")
-def test_worst_instants_of_a_building() -> None:
+def test_worst_instants_of_a_building():
     """No sample presses more, and the moment runs to the upper end as that end asks."""
     of = designed()
     result = time_history(of, waves(6.0, 0.01, 1.8 * of.uplift_acceleration, seed=2))
@@ -99,7 +96,7 @@ def test_worst_instants_of_a_building() -> None:
 @needs_compiled_kernels
 @pytest.mark.evidence("forces in columns, friction", "exact")
 @pytest.mark.parametrize("rho", [0.0, 0.2, 0.5])
-def test_the_moment_ends_as_the_upper_end_asks(rho: float) -> None:
+def test_the_moment_ends_as_the_upper_end_asks(rho):
     """Of outer columns as well; with the mean shear they would be out of balance."""
     of = designed(rho)
     result = time_history(of, waves(6.0, 0.01, 1.8 * of.uplift_acceleration, seed=2))
@@ -114,9 +111,7 @@ def test_the_moment_ends_as_the_upper_end_asks(rho: float) -> None:
 
 
 @needs_compiled_kernels
-def test_a_pair_in_one_direction_is_the_plane_and_a_square_column_has_no_pressure() -> (
-    None
-):
+def test_a_pair_in_one_direction_is_the_plane_and_a_square_column_has_no_pressure():
     push = waves(3.0, 0.01, 4.0, seed=3)
     of = frame(0.5, ROUND)
     plane = time_history(of, push, AT_ONCE)

@@ -1,14 +1,11 @@
 """What a history says of its devices: samples, largest demands, energy, tables."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from paper_structures import known, needs_compiled_kernels, podium, waves
 
-from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.devices import (
@@ -18,7 +15,6 @@ from rpscli.model.devices import (
     Tendon,
     ViscousDamper,
 )
-from rpscli.model.podium import Device
 from rpscli.physics.state import FULL_CONTACT, ROCKING, ROLLING, STUCK
 from rpscli.report.bundles import history_columns
 from rpscli.report.timehistory import timehistory_document, timehistory_tables
@@ -40,18 +36,18 @@ SETTINGS = TimeHistorySettings(free_vibration=1.0)
 
 
 @pytest.fixture(scope="module")
-def result() -> TimeHistoryResult:
+def result():
     return time_history(STRUCTURE, RECORD, SETTINGS)
 
 
-def test_everything_happens(result: TimeHistoryResult) -> None:
+def test_everything_happens(result):
     kinds = {event.kind for event in result.events}
     assert {"sticking", "sliding", "stop_met", "stop_left", "tendon_yielding"} <= kinds
     assert {FULL_CONTACT, ROLLING, ROCKING, STUCK} >= set(result.trace.phase.tolist())
     assert STUCK in result.trace.phase
 
 
-def test_base_shear_over_that_at_uplift_with_devices(result: TimeHistoryResult) -> None:
+def test_base_shear_over_that_at_uplift_with_devices(result):
     """W tan(alpha), tendons, friction and rolling resistance at the cap beam, by hand."""
     s, b = STRUCTURE, STRUCTURE.bearing
     force = (s.weight + 4 * P) * 0.15 + F_D + s.weight * 2e-3 / b.half_height
@@ -65,7 +61,7 @@ def test_base_shear_over_that_at_uplift_with_devices(result: TimeHistoryResult) 
     )
 
 
-def test_the_audit_closes_at_every_sample(result: TimeHistoryResult) -> None:
+def test_the_audit_closes_at_every_sample(result):
     t = result.trace
     given = t.energy_input + t.energy_stored[0]
     gone = t.energy_damped + t.energy_impact + t.devices.energy.sum(axis=1)
@@ -74,7 +70,7 @@ def test_the_audit_closes_at_every_sample(result: TimeHistoryResult) -> None:
     assert result.energy.devices == pytest.approx(t.devices.energy[-1].sum())
 
 
-def test_forces_obey_the_laws(result: TimeHistoryResult) -> None:
+def test_forces_obey_the_laws(result):
     t = result.trace
     moves = (t.phase == ROLLING) | (t.phase == ROCKING)
     friction, tension, viscous, stop, rolling = t.devices.force.T
@@ -97,7 +93,7 @@ def test_forces_obey_the_laws(result: TimeHistoryResult) -> None:
     assert t.devices.displacement[:, 0] == pytest.approx(u, abs=1e-12)
 
 
-def test_contact_forces_are_those_of_the_kernel(result: TimeHistoryResult) -> None:
+def test_contact_forces_are_those_of_the_kernel(result):
     """The kernel looks at the same samples, at both ends of what is stuck, and between."""
     t = result.trace
     top = np.max(np.abs(t.shear_top / t.normal_top))
@@ -108,7 +104,7 @@ def test_contact_forces_are_those_of_the_kernel(result: TimeHistoryResult) -> No
     assert t.normal_top[0] == pytest.approx(weight + 4.0 * P)
 
 
-def test_largest_demands_cover_the_samples(result: TimeHistoryResult) -> None:
+def test_largest_demands_cover_the_samples(result):
     t = result.trace.devices
     demands = result.devices
     assert [d.kind for d in demands][:2] == ["friction", "tendon"]
@@ -123,7 +119,7 @@ def test_largest_demands_cover_the_samples(result: TimeHistoryResult) -> None:
     assert result.max_damper_force == max(demands[0].force, demands[2].force)
 
 
-def test_tables_and_documents(result: TimeHistoryResult) -> None:
+def test_tables_and_documents(result):
     names = {column.name: list(column.values) for column in history_columns(result)}
     assert names["device_1_tendon_force"] == result.trace.devices.force[:, 1].tolist()
     document = timehistory_document(result)
@@ -134,7 +130,7 @@ def test_tables_and_documents(result: TimeHistoryResult) -> None:
     assert len(list(timehistory_tables(result, [], "x"))) >= 4
 
 
-def test_without_devices_there_is_nothing_to_tell() -> None:
+def test_without_devices_there_is_nothing_to_tell():
     bare = time_history(replace(STRUCTURE, devices=()), RECORD, SETTINGS)
     assert bare.devices == ()
     assert bare.uplift_shear_ratio is None
@@ -145,7 +141,7 @@ def test_without_devices_there_is_nothing_to_tell() -> None:
 
 @needs_compiled_kernels
 @pytest.mark.parametrize("accuracy", [1.0, 2.0, 4.0, 8.0])
-def test_a_tendon_that_yielded_unloads_when_the_tilt_turns(accuracy: float) -> None:
+def test_a_tendon_that_yielded_unloads_when_the_tilt_turns(accuracy):
     """However short the step after the turn, in which its margin is rounding."""
     trace = time_history(STRUCTURE, RECORD, replace(SETTINGS, accuracy=accuracy)).trace
     tension, elongation = trace.devices.force[:, 1], trace.devices.displacement[:, 1]
@@ -156,7 +152,7 @@ def test_a_tendon_that_yielded_unloads_when_the_tilt_turns(accuracy: float) -> N
 
 @needs_compiled_kernels
 @pytest.mark.parametrize("device", [None, *STRUCTURE.devices])
-def test_steps_are_as_good_as_without_devices(device: Device | None) -> None:
+def test_steps_are_as_good_as_without_devices(device):
     """The order holds through the events of every device."""
     devices = STRUCTURE.devices if device is None else (device,)
     structure = replace(STRUCTURE, devices=devices)

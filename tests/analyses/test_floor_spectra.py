@@ -1,7 +1,5 @@
 """Spectra of floors, against closed forms and an integrator of another kind."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +14,6 @@ from rpscli.analyses.floor_spectra import (
     floor_spectra,
     isolated_floor_spectra,
 )
-from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.timehistory import time_history
 from rpscli.case.case import load_case
 from rpscli.cli import program
@@ -26,13 +23,13 @@ CASE = Path(__file__).parents[2] / "cases" / "six_storey.yaml"
 PERIODS = np.array([0.3, 0.8, 2.0])
 
 
-def shaken(source: str) -> TimeHistoryResult:
+def shaken(source):
     case = load_case(str(CASE))
     return time_history(case.structure, load_record(source), case.analysis)
 
 
 @pytest.mark.evidence("floor spectra", "exact")
-def test_a_sudden_acceleration_counts_twice_without_damping() -> None:
+def test_a_sudden_acceleration_counts_twice_without_damping():
     floors = np.ones((2001, 2)) * [1.0, 3.0]
     found = floor_spectra(floors, 0.01, PERIODS, 0.0)
     # Peaks between samples: fifty a period leave 0.2 %.
@@ -45,7 +42,7 @@ def test_a_sudden_acceleration_counts_twice_without_damping() -> None:
 
 @pytest.mark.evidence("floor spectra", "exact")
 @needs_compiled_kernels
-def test_a_building_that_stands_has_the_spectra_of_a_fixed_base() -> None:
+def test_a_building_that_stands_has_the_spectra_of_a_fixed_base():
     result = shaken("synthetic:?pga=0.02g&seed=3&duration=8&dt=0.01")
     assert result.outcome == "at_rest"
     isolated, fixed = (
@@ -60,14 +57,14 @@ def test_a_building_that_stands_has_the_spectra_of_a_fixed_base() -> None:
 
 @pytest.mark.evidence("floor spectra", "program")
 @needs_compiled_kernels
-def test_fixed_base_against_a_building_with_its_equipment() -> None:
+def test_fixed_base_against_a_building_with_its_equipment():
     """Floors and an oscillator without mass on the roof, by one solver for all of them."""
     result = shaken("synthetic:?pga=0.3g&seed=4&duration=5&dt=0.005")
     record, building = result.record, known(result.structure.superstructure)
     n, period, ratio = building.storeys, 0.8, 0.05
     omega = 2.0 * np.pi / period
 
-    def rate(t: float, y: np.ndarray) -> np.ndarray:
+    def rate(t, y):
         ground = np.interp(t, record.time, record.acceleration, right=0.0)
         u, du = y[:n], y[n : 2 * n]
         elastic = building.stiffness_matrix @ u + building.damping_matrix @ du
@@ -88,7 +85,7 @@ def test_fixed_base_against_a_building_with_its_equipment() -> None:
 
 
 @needs_compiled_kernels
-def test_floor_spectra_of_the_command(tmp_path: Path) -> None:
+def test_floor_spectra_of_the_command(tmp_path):
     source = "synthetic:?pga=0.5g&seed=1&duration=6&dt=0.01"
     words = [
         "timehistory",

@@ -1,15 +1,11 @@
 """What measurements say: of motions that were made elsewhere, or here with noise, the truth."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
 from paper_structures import (
-    Array,
     block,
     ground,
     known,
@@ -26,36 +22,34 @@ from rpscli.analyses.timehistory import time_history
 from rpscli.errors import AnalysisError
 from rpscli.model.devices import RollingResistance
 from rpscli.model.impact import ImpactLaw
-from rpscli.model.podium import PodiumStructure
 from rpscli.tools.identify import identification
 from rpscli.tools.identify import vibration as module
-from rpscli.tools.identify.estimates import Estimate, Identified
 from rpscli.tools.identify.rocking import rocking
-from rpscli.tools.identify.vibration import Vibration, vibration
+from rpscli.tools.identify.vibration import vibration
 
 
-def held(truth: float, found: Estimate) -> bool:
+def held(truth, found):
     return found.low <= truth <= found.high
 
 
 @pytest.mark.evidence("identification", "program")
 @needs_compiled_kernels
-def test_a_block_of_another_integrator_has_its_restitution() -> None:
+def test_a_block_of_another_integrator_has_its_restitution():
     """Housner's block, I_o theta'' = -m g R sin(alpha - theta), theta' -> e theta' at theta = 0."""
     found, e, dt = block(0.2, 0.6), 0.9, 0.002
     alpha, p2 = found.bearing.alpha, 0.75 * found.gravity / found.bearing.semi_diagonal
 
-    def rates(_: float, y: Any) -> list[float]:
+    def rates(_, y):
         return [y[1], -p2 * math.sin(alpha - y[0])]
 
-    def falls(_: float, y: Any) -> float:
+    def falls(_, y):
         return float(y[0])
 
-    falls.terminal, falls.direction = True, -1.0  # type: ignore[attr-defined]
+    falls.terminal, falls.direction = True, -1.0
     start, y, side = 0.0, [0.5 * alpha, 0.0], 1.0
     time, theta = np.arange(0.0, 4.0, dt), np.zeros(2000)
     while start < 4.0:
-        swing: Any = solve_ivp(
+        swing = solve_ivp(
             rates,
             (start, 5.0),
             y,
@@ -86,14 +80,14 @@ def test_a_block_of_another_integrator_has_its_restitution() -> None:
     assert held(e, cut.estimates["restitution", "-"])
 
 
-def decay(T: float, zeta: float, t: Any) -> Any:
+def decay(T, zeta, t):
     w = 2.0 * math.pi / T
     return np.exp(-zeta * w * t) * np.sin(w * math.sqrt(1.0 - zeta**2) * t + 0.4)
 
 
 @pytest.mark.evidence("identification", "exact")
 @pytest.mark.parametrize("test", ["release", "earthquake", "ambient"])
-def test_the_period_of_closed_forms(test: str) -> None:
+def test_the_period_of_closed_forms(test):
     T, zeta, dt, rng = 0.437, 0.03, 0.01, np.random.default_rng(11)
     t = np.arange({"release": 1500, "earthquake": 3000, "ambient": 60_000}[test]) * dt
     measured = None
@@ -114,7 +108,7 @@ def test_the_period_of_closed_forms(test: str) -> None:
         vibration(0.4, dt, floor[:300])
 
 
-def test_what_determines_no_period_is_refused() -> None:
+def test_what_determines_no_period_is_refused():
     t, rng = np.arange(3000) * 0.01, np.random.default_rng(2)
     noise, steady = rng.normal(0.0, 1.0, 3000), np.sin(2.0 * math.pi * t / 0.4)
     for floor, free, said in (
@@ -138,7 +132,7 @@ def test_what_determines_no_period_is_refused() -> None:
         vibration(0.4, 0.01, empty)
 
 
-def test_searches_that_go_astray_print_nothing(capfd: pytest.CaptureFixture[str]) -> None:
+def test_searches_that_go_astray_print_nothing(capfd):
     """LAPACK would write about numbers that are not finite, which it does not take."""
     for worst in (math.nan, math.inf):
         assert np.isinf(module._unexplained(np.full((4, 2), worst), np.ones(4))).all()
@@ -149,7 +143,7 @@ def test_searches_that_go_astray_print_nothing(capfd: pytest.CaptureFixture[str]
 DT = 0.01
 
 
-def made_up(number: int) -> tuple[PodiumStructure, float]:
+def made_up(number):
     """One of twelve structures that nobody tuned this to, and its loss."""
     rng = np.random.default_rng(100 + number)
     storeys = (0, 0, 1, 1, 2, 3, 3, 4, 5, 6, 6, 9)[number]
@@ -158,14 +152,12 @@ def made_up(number: int) -> tuple[PodiumStructure, float]:
     return structure, float(rng.uniform(0.3, 1.0))
 
 
-def released(
-    structure: PodiumStructure, part: float, seconds: float
-) -> tuple[Array, Array]:
+def released(structure, part, seconds):
     trace = let_go(structure, part * structure.critical_rotation, seconds, DT).trace
     return trace.time, trace.rotation
 
 
-def identified(number: int, noise: Any) -> tuple[float, Identified]:
+def identified(number, noise):
     design, loss = made_up(number)
     law = replace(design.impact_law, kind="flexible", loss=loss)
     true = replace(design, impact_law=law)
@@ -177,7 +169,7 @@ def identified(number: int, noise: Any) -> tuple[float, Identified]:
 @pytest.mark.evidence("identification", "exact")
 @needs_compiled_kernels
 @pytest.mark.long
-def test_intervals_of_the_loss_hold_the_truth() -> None:
+def test_intervals_of_the_loss_hold_the_truth():
     """Some 93 % of 240, twenty of each of twelve structures.
 
     The larger of two sizes of the noise, that of the samples and that of the residuals, makes
@@ -194,7 +186,7 @@ def test_intervals_of_the_loss_hold_the_truth() -> None:
 
 @needs_compiled_kernels
 @pytest.mark.long
-def test_restitution_and_rolling_resistance_are_told_apart() -> None:
+def test_restitution_and_rolling_resistance_are_told_apart():
     design = podium(3, 0.15, 0.3)
     true = replace(design, devices=(RollingResistance(2e-3),),
                    impact_law=ImpactLaw(loss=0.5))  # fmt: skip
@@ -215,7 +207,7 @@ def test_restitution_and_rolling_resistance_are_told_apart() -> None:
 @needs_compiled_kernels
 @pytest.mark.long
 @pytest.mark.parametrize("test", ["ambient vibration", "release", "earthquake"])
-def test_intervals_of_the_period_hold_the_truth(test: str) -> None:
+def test_intervals_of_the_period_hold_the_truth(test):
     """Some 90 % of 240: floors of buildings of the program in full contact, with noise."""
     rng, held_ones = np.random.default_rng(5), np.zeros(2)
     for storeys in (1, 2, 3, 4, 5, 6):
@@ -227,7 +219,7 @@ def test_intervals_of_the_period_hold_the_truth(test: str) -> None:
     told(VERIFICATION, f"| period; damping | {test} ... |", *held_ones, 240)
 
 
-def shaken(structure: PodiumStructure, T: float, test: str, rng: Any) -> Vibration:
+def shaken(structure, T, test, rng):
     free = test == "release"
     count = round({"ambient": 400, "release": 30, "earthquake": 50}[test] * T / DT)
     push = rng.normal(0.0, 1e-3, round(3.0 * T / DT) if free else count)
@@ -243,7 +235,7 @@ def shaken(structure: PodiumStructure, T: float, test: str, rng: Any) -> Vibrati
     return vibration(0.9 * T, DT, floor, shaking, free=free)
 
 
-def test_a_ratio_next_to_one_stays_above_it() -> None:
+def test_a_ratio_next_to_one_stays_above_it():
     """Four digits of it would be those of rigid ends, which a compliant contact refuses."""
     time = np.arange(0.0, 20.0, 0.01)
     floor = np.exp(-0.02 * time) * np.cos(2.0 * math.pi / 0.3001 * time)

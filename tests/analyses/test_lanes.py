@@ -1,8 +1,5 @@
 """Many histories side by side give the bits of each one alone, in any order and company."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -24,7 +21,6 @@ from rpscli.analyses.result_quantities import HISTORY, IMPACTS, STOREY_SHEARS
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.errors import CaseError, UsageError
 from rpscli.model.impact import ImpactLaw
-from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import ModalDamping, RayleighDamping
 from rpscli.physics.state import LANES, STATES, UPLIFT
 from rpscli.records.ground_motion import MotionComponents
@@ -55,7 +51,7 @@ SETTINGS = [
 ]
 
 
-def structures(storeys: int, modal: bool) -> list[PodiumStructure]:
+def structures(storeys, modal):
     """Six that differ in shape, size, law and damping."""
     rng = np.random.default_rng(10 * storeys + modal)
     found = []
@@ -79,9 +75,7 @@ SCALES = (0.1, 0.7, 1.0, 1.9, 4.0)
 POWERS_OF_TWO = (0.25, 0.5, 1.0, 2.0, 4.0)
 
 
-def ensemble(
-    groups: Sequence[tuple[int, bool]], each: int, scales: Sequence[float] = SCALES
-) -> list[Request]:
+def ensemble(groups, each, scales=SCALES):
     """Random histories: some at rest, some overturning, some that fail."""
     rng = np.random.default_rng(7)
     requests = []
@@ -98,7 +92,7 @@ def ensemble(
     return [requests[i] for i in rng.permutation(len(requests))]
 
 
-def bits(found: Demand) -> list[object]:
+def bits(found):
     """Everything that a study keeps, and the accelerations: equal only if every bit is."""
     arrays = (found.storey_shears.tobytes(), found.floor_accelerations.tobytes())
     alone = Demands.of_one(found.structure, found.history)
@@ -107,13 +101,13 @@ def bits(found: Demand) -> list[object]:
     return [found.outcome, found.failure, *results, *arrays]
 
 
-def all_bits(requests: Sequence[Request], worth_lanes: int) -> list[list[object]]:
+def all_bits(requests, worth_lanes):
     with np.errstate(all="ignore"):
         found = demands(requests, worth_lanes=worth_lanes)
         return [bits(demand) for demand in found]
 
 
-def companies(requests: Sequence[Request]) -> Iterator[list[int]]:
+def companies(requests):
     """Batches of many sizes, in orders of their own, that leave lanes empty or not."""
     rng = np.random.default_rng(3)
     everyone = np.arange(len(requests))
@@ -126,7 +120,7 @@ def companies(requests: Sequence[Request]) -> Iterator[list[int]]:
     yield [*everyone[:20].tolist(), *everyone[:20].tolist()]  # twice the same
 
 
-def check(requests: Sequence[Request]) -> None:
+def check(requests):
     alone = [all_bits([request], ALONE)[0] for request in requests]
     for company in companies(requests):
         together = all_bits([requests[i] for i in company], SIDE_BY_SIDE)
@@ -134,7 +128,7 @@ def check(requests: Sequence[Request]) -> None:
 
 
 @needs_compiled_kernels
-def test_lanes_give_the_bits_of_single_histories() -> None:
+def test_lanes_give_the_bits_of_single_histories():
     check(ensemble([(3, False)], 60))
 
 
@@ -143,7 +137,7 @@ EVERY_HEIGHT = [(0, False), *((n, modal) for n in (1, 2, 3) for modal in (False,
 
 @pytest.mark.long
 @pytest.mark.parametrize(("groups", "each"), [(EVERY_HEIGHT, 40), ([(33, False)], 20)])
-def test_lanes_give_them_of_any_height(groups: list[tuple[int, bool]], each: int) -> None:
+def test_lanes_give_them_of_any_height(groups, each):
     check(ensemble(groups, each))
 
 
@@ -153,7 +147,7 @@ MIXED = ensemble(
 
 
 @needs_compiled_kernels
-def test_a_history_alone_is_that_of_the_scaled_record() -> None:
+def test_a_history_alone_is_that_of_the_scaled_record():
     """One kernel for all heights and dampings: mixed batches, and `sampled_history`.
 
     The kernel rounds a scaled acceleration and what is added to it once, the scaled record twice:
@@ -173,7 +167,7 @@ def test_a_history_alone_is_that_of_the_scaled_record() -> None:
 
 
 @needs_compiled_kernels
-def test_the_histories_compared_are_of_all_kinds() -> None:
+def test_the_histories_compared_are_of_all_kinds():
     with np.errstate(all="ignore"):
         found = demands(MIXED, worth_lanes=ALONE)
     outcomes = {d.outcome for d in found}
@@ -184,7 +178,7 @@ def test_the_histories_compared_are_of_all_kinds() -> None:
     assert any(d.failure is not None and "max_events" in d.failure for d in found)
 
 
-def test_histories_without_end_are_refused_before_they_begin() -> None:
+def test_histories_without_end_are_refused_before_they_begin():
     record = ground([0.0, 1.0, 0.0], 1e18)
     with pytest.raises(
         CaseError, match=r"must not be more than 1e\+10: the record is too long"
@@ -192,21 +186,21 @@ def test_histories_without_end_are_refused_before_they_begin() -> None:
         demands([Request(podium(0), MotionComponents(record), TimeHistorySettings())])
 
 
-def test_a_sequence_of_motions_gives_a_sequence_of_demands() -> None:
+def test_a_sequence_of_motions_gives_a_sequence_of_demands():
     structure = podium(2, 0.15, 0.5)
     found = demand(structure, RECORDS)
     alone = [demand(structure, record) for record in RECORDS]
     assert [bits(each) for each in found] == [bits(each) for each in alone]
     assert demand(structure, []) == []
     with pytest.raises(UsageError, match="goes with a single record"):
-        demand(structure, RECORDS, vertical=UPWARDS[0])  # type: ignore[call-overload]
+        demand(structure, RECORDS, vertical=UPWARDS[0])
     with pytest.raises(UsageError, match="given as str"):
-        demand(structure, ["a.at2"])  # type: ignore[list-item]
+        demand(structure, ["a.at2"])
 
 
 @needs_compiled_kernels
 @pytest.mark.parametrize("pairs", [False, True])
-def test_who_waits_for_a_lane_keeps_its_bits(pairs: bool) -> None:
+def test_who_waits_for_a_lane_keeps_its_bits(pairs):
     """More histories than all groups have places, of which many move at once and some never do."""
     system = replace(structures(2, modal=False)[2], impact_law=ImpactLaw("flexible"))
     scales = np.linspace(0.05, 1.2, (STATES + 1) * LANES)

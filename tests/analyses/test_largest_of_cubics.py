@@ -1,7 +1,5 @@
 """Largest values of cubics through samples with rates, against the cubics themselves."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.interpolate import CubicHermiteSpline
@@ -12,7 +10,7 @@ STEP = 0.02
 
 
 @pytest.mark.parametrize("steepness", [0.0, 1.0, 30.0, 1e3])
-def test_no_step_that_holds_the_largest_value_is_passed_over(steepness: float) -> None:
+def test_no_step_that_holds_the_largest_value_is_passed_over(steepness):
     rng = np.random.default_rng(61)
     for _ in range(200):
         values = rng.standard_normal(12)
@@ -28,11 +26,11 @@ def test_no_step_that_holds_the_largest_value_is_passed_over(steepness: float) -
         )
 
 
-def test_a_cubic_passes_its_ends_by_four_twenty_sevenths_of_its_rate() -> None:
+def test_a_cubic_passes_its_ends_by_four_twenty_sevenths_of_its_rate():
     assert largest_of_cubics(np.zeros(2), np.array([1.0, 0.0]), STEP) == pytest.approx(
         4.0 / 27.0 * STEP, rel=1e-14
     )
 
 
-def test_what_is_not_finite_is_said() -> None:
+def test_what_is_not_finite_is_said():
     assert np.isnan(largest_of_cubics(np.array([0.0, np.nan, 1.0]), np.zeros(3), STEP))

@@ -1,7 +1,5 @@
 """Modes in each state: pairs of eigenvalues, closed forms, and what shapes solve."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from itertools import product
@@ -24,9 +22,7 @@ SIZES += [(50, FLAT), (50, 0.5), (100, 1.5)]
 
 
 @pytest.mark.parametrize(("storeys", "rho"), SIZES)
-def test_frequencies_and_damping_belong_to_their_eigenvalues(
-    storeys: int, rho: float
-) -> None:
+def test_frequencies_and_damping_belong_to_their_eigenvalues(storeys, rho):
     for modes in modal(podium(storeys, 0.15, rho)).uplifted.values():
         first, second = modes.eigenvalues[2::2], modes.eigenvalues[3::2]
         products = np.sqrt((first * second).real)
@@ -40,9 +36,7 @@ def test_frequencies_and_damping_belong_to_their_eigenvalues(
 
 
 @pytest.mark.parametrize(("storeys", "ratio"), [(30, 0.05), (30, 0.2), (100, 0.05)])
-def test_overdamped_modes_are_paired_as_without_damping(
-    storeys: int, ratio: float
-) -> None:
+def test_overdamped_modes_are_paired_as_without_damping(storeys, ratio):
     """High modes of tall buildings: the product of the paired roots is the squared frequency.
 
     For C = a1 K and gravity neglected each mode has the undamped frequency however damped it is.
@@ -56,7 +50,7 @@ def test_overdamped_modes_are_paired_as_without_damping(
     assert damped.frequencies == pytest.approx(undamped.frequencies, rel=1e-6)
 
 
-def test_overdamped_vibrations_leave_a_podium_that_swings_its_mode() -> None:
+def test_overdamped_vibrations_leave_a_podium_that_swings_its_mode():
     """Their slow real roots come before its pair."""
     above = building(10, damping=ModalDamping(0.99))
     modes = known(modal(podium(10, 0.15, 5.0, superstructure=above)).rolling)
@@ -66,7 +60,7 @@ def test_overdamped_vibrations_leave_a_podium_that_swings_its_mode() -> None:
     assert len(modes.frequencies) == 10
 
 
-def test_without_damping_no_mode_is_damped() -> None:
+def test_without_damping_no_mode_is_damped():
     """Not by rounding either, of any sign; the podium's own mode has roots of one size."""
     for rho in (FLAT, 0.5, 1.5):
         undamped = building(3, damping=ModalDamping(0.0))
@@ -88,7 +82,7 @@ def test_without_damping_no_mode_is_damped() -> None:
 
 
 @pytest.mark.parametrize("storeys", [1, 10, 30, 50, 100])
-def test_one_root_grows_where_the_stiffness_is_negative(storeys: int) -> None:
+def test_one_root_grows_where_the_stiffness_is_negative(storeys):
     """In tall buildings vibration modes are slower than the podium's own motion."""
     for modes in modal(podium(storeys, 0.15, FLAT)).uplifted.values():
         own, rest = modes.eigenvalues[:2], modes.eigenvalues[2:]
@@ -103,7 +97,7 @@ def test_one_root_grows_where_the_stiffness_is_negative(storeys: int) -> None:
 
 
 @pytest.mark.parametrize(("tan_alpha", "period"), [(0.05, 0.1), (0.15, 0.3), (0.3, 1.0)])
-def test_one_storey_in_closed_form(tan_alpha: float, period: float) -> None:
+def test_one_storey_in_closed_form(tan_alpha, period):
     """omega_u/omega_0 = sqrt(1 + C^2 M_tot/(N m_c Io/4 + m_b + M_tot B^2)); xi the same factor.
 
     B and C are a and 1 to first order. At rho = 1/2 gravity drops out, so the form is exact.
@@ -122,7 +116,7 @@ def test_one_storey_in_closed_form(tan_alpha: float, period: float) -> None:
 
 
 @pytest.mark.parametrize("storeys", [0, 1, 6, 100])
-def test_zero_stiffness_has_a_double_zero(storeys: int) -> None:
+def test_zero_stiffness_has_a_double_zero(storeys):
     modes = known(modal(podium(storeys, 0.15, 0.5)).rolling)
     assert modes.eigenvalues[:2].tolist() == [0.0, 0.0]
     assert modes.frequency_parameter == modes.frequency_parameter_rigid == 0.0
@@ -131,7 +125,7 @@ def test_zero_stiffness_has_a_double_zero(storeys: int) -> None:
         assert np.abs(modes.elastic_shapes[:, 0]).max() == 0.0
 
 
-def test_a_rigid_frame_has_only_its_own_mode() -> None:
+def test_a_rigid_frame_has_only_its_own_mode():
     for rho, kappa in ((FLAT, -1.0), (0.25, -0.5), (1.5, 2.0)):
         structure = podium(0, 0.15, rho)
         result = modal(structure)
@@ -147,7 +141,7 @@ def test_a_rigid_frame_has_only_its_own_mode() -> None:
     assert modal(podium(2, 0.15, FLAT)).rolling is None
 
 
-def test_shapes_solve_the_eigenproblem_and_fixed_base_modes_are_the_buildings() -> None:
+def test_shapes_solve_the_eigenproblem_and_fixed_base_modes_are_the_buildings():
     structure = podium(6, 0.15, 1.5)
     above = known(structure.superstructure)
     result = modal(structure)
@@ -172,7 +166,7 @@ def test_shapes_solve_the_eigenproblem_and_fixed_base_modes_are_the_buildings() 
     assert np.abs(off).max() < 1e-9 * masses[0]
 
 
-def test_the_podiums_own_mode_in_words() -> None:
+def test_the_podiums_own_mode_in_words():
     """Rigid frame to first order: lambda^2 = -kappa p^2, kappa = 2 rho - 1, rocking -1.
 
     With p^2 = (g/R)(1 + 2 gamma)/(Io + 4 gamma) and gamma = 10, Io = 4/3, R = 1.5 m:
@@ -198,7 +192,7 @@ def test_the_podiums_own_mode_in_words() -> None:
         assert np.ptp(neutral.shapes[:, 0]) == 0.0
 
 
-def test_the_storey_that_yields_first_in_a_mode() -> None:
+def test_the_storey_that_yields_first_in_a_mode():
     """Undamped, so that a solver for symmetric M and K finds the modes as well."""
     elastic = building(3, damping=ModalDamping(0.0))
     above = yielding(elastic, 1e6)

@@ -1,7 +1,5 @@
 """Exact modes against a numerical Jacobian of other equations of motion; the paper's as a limit."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -12,7 +10,6 @@ from oracles.devices import Tendon as OracleTendon
 from oracles.storey_lagrangian import Contact, StoreyLagrangian
 from paper_structures import (
     FLAT,
-    Array,
     building,
     known,
     oracle_devices,
@@ -20,11 +17,10 @@ from paper_structures import (
     podium,
 )
 
-from rpscli.analyses.modal import UpliftedModes, modal
+from rpscli.analyses.modal import modal
 from rpscli.model.bearing import Bearing
 from rpscli.model.devices import FrictionDamper, Tendon, ViscousDamper
 from rpscli.model.impact import ImpactLaw
-from rpscli.model.podium import Device, PodiumStructure
 
 pytestmark = pytest.mark.evidence("modes", "program")
 
@@ -32,7 +28,7 @@ pytestmark = pytest.mark.evidence("modes", "program")
 SHAPES = [(0.02, 0.04, 0.5), (0.15, 0.3, FLAT), (0.15, 0.3, 0.25), (0.6, 1.2, 0.7)]
 SHAPES += [(1.0, 1.5, 1.5), (0.5, 2.0, 0.75)]
 
-DEVICES: dict[str, tuple[Device, ...]] = {
+DEVICES = {
     "none": (),
     "viscous": (ViscousDamper(4e5),),
     "prestress": (Tendon(3e5, 5e5),),
@@ -40,7 +36,7 @@ DEVICES: dict[str, tuple[Device, ...]] = {
 }
 
 
-def jacobian(structure: PodiumStructure, *, rolling: bool) -> Array:
+def jacobian(structure, *, rolling):
     """Of [theta, drifts] and their rates where the state begins, by differences (2 n + 2, ...).
 
     A constant moment holds the weight and the tendons there, so that it is an equilibrium.
@@ -59,13 +55,13 @@ def jacobian(structure: PodiumStructure, *, rolling: bool) -> Array:
         for each in gear.devices
     )
 
-    def devices(y: Array) -> float:
+    def devices(y):
         return sum(active for active, _ in gear.moments(contact, y[0], y[n + 1], 1))
 
     weight = motion.lifted_mass * structure.gravity
     held = weight * motion.cap_beam(start, rolling=rolling)[1].imag - devices(y)
 
-    def rates(y: Array) -> Array:
+    def rates(y):
         moved = motion.acceleration(contact, y, 0.0, structure.gravity, held + devices(y))
         return np.concatenate([y[n + 1 :], moved])
 
@@ -85,9 +81,7 @@ def jacobian(structure: PodiumStructure, *, rolling: bool) -> Array:
 @pytest.mark.parametrize("devices", DEVICES)
 @pytest.mark.parametrize("storeys", [0, 1, 3])
 @pytest.mark.parametrize("shape", SHAPES, ids=str)
-def test_eigenvalues_are_those_of_the_jacobian(
-    shape: tuple[float, float, float], storeys: int, devices: str
-) -> None:
+def test_eigenvalues_are_those_of_the_jacobian(shape, storeys, devices):
     bare = replace(podium(storeys), bearing=Bearing(1.5, *shape), columns=6)
     structure = replace(bare, devices=DEVICES[devices])
     beside = replace(structure, devices=(*structure.devices, FrictionDamper(1e5)))
@@ -104,9 +98,7 @@ def test_eigenvalues_are_those_of_the_jacobian(
 @pytest.mark.evidence("floors on vertical springs", "exact")
 @pytest.mark.parametrize("shape", [*SHAPES, (0.0, 0.3, 0.8)], ids=str)
 @pytest.mark.parametrize("storeys", [1, 3])
-def test_springs_in_tilt_drifts_and_lifts(
-    storeys: int, shape: tuple[float, float, float]
-) -> None:
+def test_springs_in_tilt_drifts_and_lifts(storeys, shape):
     """Second derivatives of the energies in [theta, drifts, lifts over the beam].
 
     Weight and springs cancel where floors have sagged, so lifts add nothing but their springs.
@@ -147,7 +139,7 @@ def test_springs_in_tilt_drifts_and_lifts(
         assert np.all(modes.vertical_frequencies > 0.99 * np.sqrt(squares))
 
 
-def off_to_first_order(modes: UpliftedModes) -> Array:
+def off_to_first_order(modes):
     """Relative errors of the first frequency, its damping and the own mode."""
     paper = known(modes.first_order)
     assert paper.first_order is None
@@ -155,15 +147,14 @@ def off_to_first_order(modes: UpliftedModes) -> Array:
         np.array([each.frequencies[0], each.damping[0], each.frequency_parameter])
         for each in (paper, modes)
     )
-    errors: Array = printed / exact - 1.0
-    return errors
+    return printed / exact - 1.0
 
 
 @pytest.mark.parametrize("devices", ["none", "prestress"])
 @pytest.mark.parametrize("rho", [FLAT, 0.3, 1.5])
-def test_first_order_is_the_limit_for_small_alpha(rho: float, devices: str) -> None:
+def test_first_order_is_the_limit_for_small_alpha(rho, devices):
     """What it leaves out falls with the square of alpha, in vibrations and in the own mode."""
-    off: list[Array] = []
+    off = []
     for tan_alpha in (0.1, 0.05, 0.025):
         structure = replace(podium(3, tan_alpha, rho), devices=DEVICES[devices])
         off += [off_to_first_order(modes) for modes in modal(structure).uplifted.values()]
@@ -179,15 +170,13 @@ def test_first_order_is_the_limit_for_small_alpha(rho: float, devices: str) -> N
     ("tan_alpha", "per_cent"),
     [(0.15, (0.54, 0.37, -0.26)), (0.3, (2.04, 1.57, -0.90)), (0.6, (6.37, 5.74, -2.11))],
 )
-def test_what_first_order_leaves_out(
-    tan_alpha: float, per_cent: tuple[float, ...]
-) -> None:
+def test_what_first_order_leaves_out(tan_alpha, per_cent):
     """Three storeys, flat ends, in per cent as THEORY has them."""
     found = off_to_first_order(modal(podium(3, tan_alpha, FLAT)).rocking)
     assert 100.0 * found == pytest.approx(per_cent, abs=0.006)
 
 
-def test_a_rigid_block_falls_as_its_pendulum_does() -> None:
+def test_a_rigid_block_falls_as_its_pendulum_does():
     """theta'' = p^2 sin(theta - alpha): its slope at theta = 0 is p^2 cos(alpha)."""
     for tan_alpha in (0.1, 0.5, 1.0):
         structure = podium(0, tan_alpha, FLAT)

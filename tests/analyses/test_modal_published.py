@@ -1,13 +1,11 @@
 """Amplifications after uplift as in the paper's Figures 3 to 6, to the digits of their table."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from paper_structures import podium
 from shown_commands import VERIFICATION, table
 
-from rpscli.analyses.modal import UpliftedModes, modal
+from rpscli.analyses.modal import modal
 
 pytestmark = pytest.mark.evidence("modes", "published")
 
@@ -33,7 +31,7 @@ FREQUENCY_PARAMETER = {
 """By rho and R [m]: p_ext of the model and of the rigid estimate [rad/s]."""
 
 
-def known(value: float) -> object:
+def known(value):
     """Half of the third decimal; and some were computed with g = 9.81 m/s2.
 
     That is 3.4e-4 more than the standard value, and frequencies go with its root.
@@ -41,14 +39,14 @@ def known(value: float) -> object:
     return pytest.approx(value, abs=0.5e-3 + 1.8e-4 * value)
 
 
-def uplifted(storeys: int, rho: float, R: float = 1.5) -> UpliftedModes:
+def uplifted(storeys, rho, R=1.5):
     """To first order, as the paper: rolling with rho, or `ROCKING`."""
     states = modal(podium(storeys, 0.15, 0.5 if rho == ROCKING else rho, R=R)).both_orders
     return states["rocking" if rho == ROCKING else "rolling"][1]
 
 
 @pytest.mark.parametrize(("storeys", "rho"), AMPLIFICATION)
-def test_first_mode(storeys: int, rho: float) -> None:
+def test_first_mode(storeys, rho):
     frequency, damping = AMPLIFICATION[storeys, rho]
     modes = uplifted(storeys, rho)
     assert modes.frequency_ratio[0] == known(frequency)
@@ -56,7 +54,7 @@ def test_first_mode(storeys: int, rho: float) -> None:
 
 
 @pytest.mark.parametrize(("rho", "R"), FREQUENCY_PARAMETER)
-def test_frequency_parameter_of_six_storeys(rho: float, R: float) -> None:
+def test_frequency_parameter_of_six_storeys(rho, R):
     model, rigid = FREQUENCY_PARAMETER[rho, R]
     modes = uplifted(6, rho, R)
     assert modes.frequency_parameter == known(model)
@@ -66,7 +64,7 @@ def test_frequency_parameter_of_six_storeys(rho: float, R: float) -> None:
     )
 
 
-def test_figure_3() -> None:
+def test_figure_3():
     """More amplification in rolling than in rocking; rho_cr and 0.5 alike, 1.5 larger."""
     for n in range(1, 11):
         rocking = uplifted(n, ROCKING).frequency_ratio[0]
@@ -80,7 +78,7 @@ def test_figure_3() -> None:
             assert modes.damping_ratio[0] < modes.frequency_ratio[0]
 
 
-def test_figure_4() -> None:
+def test_figure_4():
     """The rigid estimate is good up to rho = 1/2, and off for small columns with large radii."""
     assert uplifted(6, 0.5).frequency_parameter == 0.0
     for R in (0.5, 1.0, 1.5, 3.0):
@@ -96,7 +94,7 @@ def test_figure_4() -> None:
     assert off[-1] > 0.05
 
 
-def test_figure_5() -> None:
+def test_figure_5():
     """Independent of the number of storeys for negative stiffness, not for positive."""
     negative = [uplifted(n, 0.25).frequency_parameter for n in range(1, 11)]
     positive = [uplifted(n, 1.5).frequency_parameter for n in range(1, 11)]
@@ -104,7 +102,7 @@ def test_figure_5() -> None:
     assert np.ptp(positive) / np.mean(positive) > 0.05
 
 
-def test_figure_6() -> None:
+def test_figure_6():
     """The elastic part is negligible in the podium's own mode, and only there."""
     for rho in (0.25, 0.5, 1.5, ROCKING):
         modes = uplifted(3, rho)

@@ -1,14 +1,11 @@
 """Histories beside one: each is what a case with that motion or law gives by itself."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest
 from paper_structures import block, known, needs_compiled_kernels, podium, waves
 
 from rpscli.analyses import timehistory as module
-from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import FACTORS, neighbours, time_history
 from rpscli.model.impact import ImpactLaw
@@ -21,13 +18,11 @@ SHORT = TimeHistorySettings(free_vibration=1.0)
 
 
 @pytest.fixture(scope="module")
-def result() -> TimeHistoryResult:
+def result():
     return time_history(podium(3), RECORD, SHORT)
 
 
-def test_they_are_histories_of_motions_that_were_scaled_before(
-    result: TimeHistoryResult,
-) -> None:
+def test_they_are_histories_of_motions_that_were_scaled_before(result):
     *motions, law = neighbours(result)
     assert [each.factor for each in motions] == list(FACTORS)
     for each in motions:
@@ -42,7 +37,7 @@ def test_they_are_histories_of_motions_that_were_scaled_before(
     assert law.rotation_ratio == time_history(half, RECORD, SHORT).rotation_ratio
 
 
-def test_the_text_says_how_far_a_percent_moves_it(result: TimeHistoryResult) -> None:
+def test_the_text_says_how_far_a_percent_moves_it(result):
     found = neighbours(result)
     one, other = neighbours_texts(result, found)
     near = sorted(each.rotation_ratio for each in found if each.factor in {0.99, 1.01})
@@ -50,7 +45,7 @@ def test_the_text_says_how_far_a_percent_moves_it(result: TimeHistoryResult) -> 
     assert "instead of" in other
 
 
-def test_motions_that_overturn_are_counted() -> None:
+def test_motions_that_overturn_are_counted():
     """Between two strengths, the weaker of which stands, and from which on it overturns."""
     rock, low, high = block(0.3, 0.4), 0.5, 8.0
     for _ in range(12):
@@ -68,25 +63,21 @@ def test_motions_that_overturn_are_counted() -> None:
     )
 
 
-def test_a_measured_restitution_has_no_other_law() -> None:
+def test_a_measured_restitution_has_no_other_law():
     measured = replace(podium(2), impact_law=ImpactLaw("value", restitution=0.9))
     result = time_history(measured, RECORD, SHORT)
     assert [each.factor for each in neighbours(result)] == list(FACTORS)
     assert restitution_text(measured).endswith("e2 = 0.8100")
 
 
-def test_long_histories_say_that_nothing_was_looked_at(
-    result: TimeHistoryResult, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_long_histories_say_that_nothing_was_looked_at(result, monkeypatch):
     monkeypatch.setattr(module, "MOST_STEPS_BESIDE", 10)
     assert neighbours(result) == []
     (text,) = neighbours_texts(result, [])
     assert "steps are too many" in text
 
 
-def test_floors_are_held_against_those_of_the_fixed_base(
-    result: TimeHistoryResult,
-) -> None:
+def test_floors_are_held_against_those_of_the_fixed_base(result):
     """A stiff building in full contact has the same accelerations; on bearings others."""
     still = time_history(podium(2), RECORD.scaled(1e-3), SHORT)
     assert still.outcome == "at_rest"

@@ -1,21 +1,19 @@
 """Capacity curves: statics of the storey, and of the building that it carries."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from paper_structures import FLAT, Array, building, known, podium, yielding
+from paper_structures import FLAT, building, known, podium, yielding
 
-from rpscli.analyses.pushover import PATTERNS, PatternName, load_pattern, pushover
+from rpscli.analyses.pushover import PATTERNS, load_pattern, pushover
 from rpscli.model.superstructure import RayleighDamping, Superstructure, stiffness_matrix
 
 
 @pytest.mark.evidence("pushover", "exact")
 @pytest.mark.parametrize("rho", [FLAT, 0.26, 0.5, 1.5])
 @pytest.mark.parametrize("storeys", [0, 3])
-def test_storey_curve(storeys: int, rho: float) -> None:
+def test_storey_curve(storeys, rho):
     structure = podium(storeys, 0.15, rho)
     result = pushover(structure, points=401)
     curve, W = result.curve, structure.weight
@@ -37,7 +35,7 @@ def test_storey_curve(storeys: int, rho: float) -> None:
 
 
 @pytest.mark.evidence("pushover", "published")
-def test_figure_1_of_the_paper() -> None:
+def test_figure_1_of_the_paper():
     """Slope after uplift: negative, zero, positive for rho < 0.5, = 0.5, > 0.5."""
     slopes = []
     for rho in (FLAT, 0.3, 0.5, 0.7, 1.5):
@@ -55,7 +53,7 @@ def test_figure_1_of_the_paper() -> None:
 
 @pytest.mark.evidence("pushover", "exact")
 @pytest.mark.parametrize("pattern", PATTERNS)
-def test_capacity_is_elastic_to_uplift_and_the_storey_beyond(pattern: str) -> None:
+def test_capacity_is_elastic_to_uplift_and_the_storey_beyond(pattern):
     structure = podium(4, 0.15, 0.5)
     above = known(structure.superstructure)
     result = pushover(structure)
@@ -83,7 +81,7 @@ def test_capacity_is_elastic_to_uplift_and_the_storey_beyond(pattern: str) -> No
     )
 
 
-def event_to_event(above: Superstructure, forces: Array, most: float) -> float:
+def event_to_event(above, forces, most):
     """Roof under floor forces lambda p: tangent stiffness from one storey's yield to the next."""
     forces_at_yield = known(above.strengths) / forces[::-1].cumsum()[::-1]
     events = sorted(F for F in [*forces_at_yield, most] if most >= F)
@@ -104,9 +102,7 @@ def event_to_event(above: Superstructure, forces: Array, most: float) -> float:
 @pytest.mark.parametrize(
     ("rho", "ratio"), [(FLAT, 1.1), (0.5, 1.1), (1.5, 1.45), (1.5, 1.1)]
 )
-def test_storeys_that_yield_bend_the_curve(
-    pattern: PatternName, rho: float, ratio: float
-) -> None:
+def test_storeys_that_yield_bend_the_curve(pattern, rho, ratio):
     """Before columns lift and after; as the force falls storeys unload elastically."""
     static = podium(3).static_base_shear
     above = yielding(building(3), ratio * static, hardening=0.2)
@@ -142,7 +138,7 @@ def test_storeys_that_yield_bend_the_curve(
     assert len(curve.yielding) >= (1 if rho == 1.5 else len(weak))
 
 
-def test_without_hardening_the_curve_ends_as_a_mechanism() -> None:
+def test_without_hardening_the_curve_ends_as_a_mechanism():
     structure = podium(3)
     above = yielding(building(3), 1.1 * structure.static_base_shear, 0.0)
     result = pushover(podium(3, superstructure=above), patterns=["uniform"])
@@ -166,7 +162,7 @@ def test_without_hardening_the_curve_ends_as_a_mechanism() -> None:
     assert "yield_forces" not in pushover(structure).results()["capacity"][0]
 
 
-def test_patterns() -> None:
+def test_patterns():
     masses, heights = np.array([3.0, 1.0, 2.0]), np.array([4.0, 3.0, 3.0])
     k = np.array([9.0, 7.0, 5.0])
     above = Superstructure(masses, k, RayleighDamping(0.05), heights)
@@ -185,7 +181,7 @@ def test_patterns() -> None:
 
 
 @given(st.lists(st.floats(-5.0, 5.0), min_size=3, max_size=3))
-def test_any_pattern_that_pushes_is_scaled_to_one(forces: list[float]) -> None:
+def test_any_pattern_that_pushes_is_scaled_to_one(forces):
     above = building(3)
     if sum(forces) <= 0.0:
         with pytest.raises(ValueError, match="sum > 0"):
@@ -197,12 +193,12 @@ def test_any_pattern_that_pushes_is_scaled_to_one(forces: list[float]) -> None:
 @pytest.mark.parametrize(
     "forces", [[1.0, 1.0], [], [1.0, 1.0, float("nan")], [1.0, 0.0, -1.0]]
 )
-def test_patterns_that_do_not_fit_are_refused(forces: list[float]) -> None:
+def test_patterns_that_do_not_fit_are_refused(forces):
     with pytest.raises(ValueError, match="must be 3 floor forces"):
         pushover(podium(3), patterns=[forces])
 
 
-def test_a_given_pattern_is_called_given_and_a_frame_has_no_capacity_curve() -> None:
+def test_a_given_pattern_is_called_given_and_a_frame_has_no_capacity_curve():
     (capacity,) = pushover(podium(2), patterns=[[1.0, 3.0]]).capacity
     assert capacity.pattern == "given"
     assert capacity.forces.tolist() == [0.25, 0.75]

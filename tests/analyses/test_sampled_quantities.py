@@ -1,7 +1,5 @@
 """Numbers of single histories by hand: samples, the end, nearness to overturning and sliding."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -19,7 +17,6 @@ from paper_structures import (
 )
 
 from rpscli.analyses.demand import demand
-from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.superstructure import Superstructure
@@ -27,7 +24,7 @@ from rpscli.model.superstructure import Superstructure
 AT_ONCE = TimeHistorySettings(free_vibration=0.0)
 
 
-def test_a_stiff_building_in_full_contact_moves_with_the_ground() -> None:
+def test_a_stiff_building_in_full_contact_moves_with_the_ground():
     """1 m/s2 for 0.5 s after a rise of 0.1 s: 0.05 + 0.5 = 0.55 m/s, kept to the end."""
     above = building(2)
     stiff = Superstructure(above.masses, 1e4 * above.stiffnesses, above.damping)
@@ -42,7 +39,7 @@ def test_a_stiff_building_in_full_contact_moves_with_the_ground() -> None:
     assert result.fixed_base_ratio == pytest.approx(1.0, rel=1e-5)
 
 
-def test_columns_at_rest_carry_the_weight_and_the_mass_times_acceleration() -> None:
+def test_columns_at_rest_carry_the_weight_and_the_mass_times_acceleration():
     """Cap beam 200 t on 4 columns of 5 t: N = 490.3 and 539.4 kN; 1 m/s2 on them, 50 and 55 kN."""
     frame = replace(podium(0, 0.15, 0.5), columns=4)
     result = time_history(frame, ground([0.0, 1.0, 0.0], 0.1), AT_ONCE)
@@ -60,7 +57,7 @@ def test_columns_at_rest_carry_the_weight_and_the_mass_times_acceleration() -> N
     assert (result.max_roof_displacement, result.max_floor_velocity) == (None, None)
 
 
-def test_a_released_roof_starts_above_its_cap_beam() -> None:
+def test_a_released_roof_starts_above_its_cap_beam():
     """Unstrained, it is as far from its place as the cap beam."""
     structure = podium(2, 0.15, 0.5)
     _, u, _ = structure.path(np.array([0.05]))
@@ -73,7 +70,7 @@ BLOCK = block(0.3, 0.4)
 """R = 0.5 m, cos(a) = 0.8, theta_cr = a = 0.6435 rad."""
 
 
-def test_a_building_that_stands_again_has_no_residual() -> None:
+def test_a_building_that_stands_again_has_no_residual():
     """Without a coefficient nothing is said of sliding."""
     result = time_history(podium(2), waves(3.0, 0.02, 4.0, seed=21))
     assert (result.outcome, result.trace.phase[-1]) == ("survived", 0)
@@ -86,7 +83,7 @@ def test_a_building_that_stands_again_has_no_residual() -> None:
     assert result.max_floor_acceleration == max(result.floor_accelerations)
 
 
-def test_a_storey_that_still_moves_has_the_rotation_of_its_last_sample() -> None:
+def test_a_storey_that_still_moves_has_the_rotation_of_its_last_sample():
     settings = TimeHistorySettings(initial_rotation=-0.3, free_vibration=0.1)
     result = time_history(BLOCK, stillness(0.02), settings)
     assert result.trace.rotation[-1] < 0.0
@@ -101,7 +98,7 @@ def test_a_storey_that_still_moves_has_the_rotation_of_its_last_sample() -> None
     assert result.max_floor_acceleration is None
 
 
-def test_the_lift_is_that_of_the_largest_rotation() -> None:
+def test_the_lift_is_that_of_the_largest_rotation():
     """v_b = 2 R (cos(a - x) - cos a); released at half of theta_cr: 0.94868 - 0.8."""
     start = 0.5 * BLOCK.critical_rotation
     result = time_history(
@@ -110,7 +107,7 @@ def test_the_lift_is_that_of_the_largest_rotation() -> None:
     assert result.max_lift == pytest.approx(0.148683, abs=1e-6)
 
 
-def test_nothing_is_lifted_higher_than_at_the_critical_rotation() -> None:
+def test_nothing_is_lifted_higher_than_at_the_critical_rotation():
     """Overturning, v_b falls again beyond theta_cr, where it was 2 R (1 - cos a) = 0.2 m."""
     push = ground([0.0, -20.0, -20.0, -20.0, 0.0], 0.2)
     result = time_history(BLOCK, push)
@@ -119,7 +116,7 @@ def test_nothing_is_lifted_higher_than_at_the_critical_rotation() -> None:
     assert not [warning for warning in result.warnings if "critical" in warning]
 
 
-def released(share: float) -> TimeHistoryResult:
+def released(share):
     """A frame released from rest at a share of its critical rotation."""
     structure = podium(0, 0.15, 0.5)
     start = TimeHistorySettings(initial_rotation=share * structure.critical_rotation)
@@ -127,7 +124,7 @@ def released(share: float) -> TimeHistoryResult:
 
 
 @pytest.mark.parametrize(("share", "near"), [(0.79, False), (0.81, True)])
-def test_rotations_near_the_critical_one_are_told(share: float, near: bool) -> None:
+def test_rotations_near_the_critical_one_are_told(share, near):
     result = released(share)
     assert result.outcome == "survived"
     assert result.is_near_critical is near
@@ -136,7 +133,7 @@ def test_rotations_near_the_critical_one_are_told(share: float, near: bool) -> N
     )
 
 
-def test_a_passage_of_the_critical_rotation_is_told_with_its_time() -> None:
+def test_a_passage_of_the_critical_rotation_is_told_with_its_time():
     result = released(0.9)
     limit = result.critical_rotation
     passed = result.history.copy()
@@ -147,8 +144,8 @@ def test_a_passage_of_the_critical_rotation_is_told_with_its_time() -> None:
 
 @pytest.mark.parametrize(("coefficient", "slides"), [(0.10, True), (0.20, False)])
 def test_a_block_in_full_contact_slides_when_the_ground_outruns_its_friction(
-    coefficient: float, slides: bool
-) -> None:
+    coefficient, slides
+):
     """|F|/N = a_g/g: rising by 0.03 g a sample it passes 0.10 at the fourth, 0.4 s."""
     standing = replace(block(0.15, 1.0 / 1.5), friction=coefficient)  # tan(alpha) = 0.225
     rise = 0.03 * 9.80665 * np.array([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 0.0])

@@ -1,7 +1,5 @@
 """Results of a time history agree with its own samples and with statics; what users are told."""
 
-from __future__ import annotations
-
 import math
 import re
 import tracemalloc
@@ -26,15 +24,13 @@ from paper_structures import (
 from rpscli.analyses.demand import demand
 from rpscli.analyses.fixed_base import fixed_base_response, reference_shears
 from rpscli.analyses.kernels.history import FIRST_LOG, MOST_NUMBERS, numbers_of_a_sample
-from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.errors import CaseError, RecordError
 from rpscli.model.devices import ViscousDamper
 from rpscli.model.impact import ImpactLaw
-from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import ModalDamping, RayleighDamping, Superstructure
-from rpscli.records.ground_motion import GroundMotion, MotionComponents
+from rpscli.records.ground_motion import MotionComponents
 from rpscli.report.bundles import timehistory_files
 from rpscli.report.figures.look import Look
 
@@ -52,11 +48,11 @@ STRUCTURES = [
 
 
 @pytest.fixture(scope="module", params=STRUCTURES)
-def result(request: pytest.FixtureRequest) -> TimeHistoryResult:
+def result(request):
     return time_history(request.param, RECORD, SETTINGS, vertical=VERTICAL)
 
 
-def test_maxima_are_not_below_the_samples(result: TimeHistoryResult) -> None:
+def test_maxima_are_not_below_the_samples(result):
     trace = result.trace
     rotation = np.abs(trace.rotation)
     # turning points lie between samples: x'' dt^2/8 above the nearest at most
@@ -81,7 +77,7 @@ def test_maxima_are_not_below_the_samples(result: TimeHistoryResult) -> None:
     assert result.base_shear_ratio == pytest.approx(ratio, rel=1e-11)
 
 
-def test_floors_stand_on_the_cap_beam(result: TimeHistoryResult) -> None:
+def test_floors_stand_on_the_cap_beam(result):
     trace, above = result.trace, result.structure.superstructure
     _, u, lift = result.structure.path(np.abs(trace.rotation))
     assert trace.cap_beam_displacement == pytest.approx(
@@ -98,7 +94,7 @@ def test_floors_stand_on_the_cap_beam(result: TimeHistoryResult) -> None:
     )
 
 
-def test_the_record_is_zero_after_its_end(result: TimeHistoryResult) -> None:
+def test_the_record_is_zero_after_its_end(result):
     a = result.trace.ground_acceleration
     assert len(a) == RECORD.npts + 50
     assert a[: RECORD.npts].tolist() == RECORD.acceleration.tolist()
@@ -107,7 +103,7 @@ def test_the_record_is_zero_after_its_end(result: TimeHistoryResult) -> None:
     assert result.duration == pytest.approx(RECORD.duration + 1.0, rel=1e-12)
 
 
-def test_the_energy_audit_closes_at_every_sample(result: TimeHistoryResult) -> None:
+def test_the_energy_audit_closes_at_every_sample(result):
     trace, energy = result.trace, result.energy
     assert result.impacts > 0
     gap = (
@@ -129,7 +125,7 @@ def test_the_energy_audit_closes_at_every_sample(result: TimeHistoryResult) -> N
     assert result.history.creating_impacts == sum(change < 0.0 for change in impacts)
 
 
-def test_events_are_in_order_and_make_sense(result: TimeHistoryResult) -> None:
+def test_events_are_in_order_and_make_sense(result):
     events, times = result.events, [event.time for event in result.events]
     assert times == sorted(times)
     assert 0.0 <= times[0] <= times[-1] <= result.duration
@@ -155,7 +151,7 @@ def test_events_are_in_order_and_make_sense(result: TimeHistoryResult) -> None:
     )
 
 
-def test_phases_of_the_samples_fit_their_rotations(result: TimeHistoryResult) -> None:
+def test_phases_of_the_samples_fit_their_rotations(result):
     trace, beta = result.trace, result.structure.bearing.beta
     x = np.abs(trace.rotation)
     assert np.all(x[trace.phase == 0] == 0.0)
@@ -163,7 +159,7 @@ def test_phases_of_the_samples_fit_their_rotations(result: TimeHistoryResult) ->
     assert np.all(x[trace.phase == 2] >= beta)
 
 
-def test_a_study_sees_the_same_numbers(result: TimeHistoryResult) -> None:
+def test_a_study_sees_the_same_numbers(result):
     quick = demand(result.structure, RECORD, SETTINGS, vertical=VERTICAL)
     assert quick.scalars() == result.scalars()
     assert quick.storey_shears.tolist() == result.storey_shears.tolist()
@@ -171,7 +167,7 @@ def test_a_study_sees_the_same_numbers(result: TimeHistoryResult) -> None:
     assert quick.energy_created == result.energy.created
 
 
-def test_scalars_are_plain_and_complete(result: TimeHistoryResult) -> None:
+def test_scalars_are_plain_and_complete(result):
     scalars = result.scalars()
     assert scalars["outcome"] == result.outcome
     assert scalars["max_rotation"] == result.max_rotation
@@ -183,14 +179,14 @@ def test_scalars_are_plain_and_complete(result: TimeHistoryResult) -> None:
     assert scalars.get("failure") is None
 
 
-def test_a_structure_at_rest_has_no_largest_rotation() -> None:
+def test_a_structure_at_rest_has_no_largest_rotation():
     still = ground(0.5 * RECORD.acceleration / RECORD.pga, 0.02)
     quiet = time_history(podium(0), still, SETTINGS)
     assert quiet.outcome == "at_rest"
     assert (quiet.max_rotation, quiet.max_rotation_time) == (0.0, None)
 
 
-def test_the_restoring_moment_lifts_the_weight() -> None:
+def test_the_restoring_moment_lifts_the_weight():
     """dW v_b/dtheta, odd in theta, zero at theta_cr."""
     structure = podium(2, 0.15, 0.5)
     result = time_history(structure, ground([0.0, 0.1, 0.0], 0.02), SETTINGS)
@@ -204,7 +200,7 @@ def test_the_restoring_moment_lifts_the_weight() -> None:
     assert abs(result.restoring_moment(np.array([end]))[0]) < 1e-10 * moment[0]
 
 
-def test_slow_rocking_is_driven_by_what_restores_it() -> None:
+def test_slow_rocking_is_driven_by_what_restores_it():
     """Held still at the limit of uplift the driving moment is 2 R W B(0)."""
     structure = podium(2, 0.15, 0.5)
     rise = np.concatenate((np.linspace(0.0, -1.0000001, 4001), np.full(2, -1.0000001)))
@@ -217,7 +213,7 @@ def test_slow_rocking_is_driven_by_what_restores_it() -> None:
     assert shear == pytest.approx(structure.static_base_shear, rel=1e-4)
 
 
-def test_drift_ratios_need_storey_heights() -> None:
+def test_drift_ratios_need_storey_heights():
     above = building(2)
     tall = Superstructure(
         above.masses, above.stiffnesses, above.damping, np.array([4.0, 2.0])
@@ -228,7 +224,7 @@ def test_drift_ratios_need_storey_heights() -> None:
     assert time_history(podium(2), RECORD, SETTINGS).drift_ratio is None
 
 
-def test_a_shorter_component_goes_on_as_zero() -> None:
+def test_a_shorter_component_goes_on_as_zero():
     structure = podium(1)
     longer = ground(np.concatenate((RECORD.acceleration, np.zeros(30))), 0.02)
     settings = replace(SETTINGS, free_vibration=0.0)
@@ -247,7 +243,7 @@ def test_a_shorter_component_goes_on_as_zero() -> None:
 
 
 @needs_compiled_kernels
-def test_a_log_that_overflows_is_written_again() -> None:
+def test_a_log_that_overflows_is_written_again():
     """More events than the first attempt has room for: all are listed."""
     structure = podium(0, 0.05, FLAT)
     pulse = 1.05 * structure.uplift_acceleration * np.sin(np.linspace(0.0, np.pi, 11))
@@ -263,9 +259,7 @@ def test_a_log_that_overflows_is_written_again() -> None:
 
 @needs_compiled_kernels
 @pytest.mark.parametrize(("law", "creates"), [("rigid", True), ("flexible", False)])
-def test_energy_created_by_a_release_is_told_with_a_remedy(
-    law: str, creates: bool
-) -> None:
+def test_energy_created_by_a_release_is_told_with_a_remedy(law, creates):
     """A tall building of short period against the rigid law; no ground motion supplies energy."""
     structure = podium(
         30, 0.15, FLAT, superstructure=building(30, 0.5), law=ImpactLaw(law)
@@ -283,7 +277,7 @@ def test_energy_created_by_a_release_is_told_with_a_remedy(
 
 
 @needs_compiled_kernels
-def test_a_storey_that_never_stops_is_told() -> None:
+def test_a_storey_that_never_stops_is_told():
     """Without loss the free vibration `auto` gives up after its longest time."""
     above = building(1, damping=RayleighDamping(0.0))
     structure = podium(1, 0.15, 0.5, law=ImpactLaw("value", 1.0), superstructure=above)
@@ -294,7 +288,7 @@ def test_a_storey_that_never_stops_is_told() -> None:
     assert any("not at rest" in warning for warning in result.warnings)
 
 
-def test_the_yardstick_sees_the_whole_record_when_the_structure_falls() -> None:
+def test_the_yardstick_sees_the_whole_record_when_the_structure_falls():
     record = waves(6.0, 0.02, 10.0, seed=1)
     results = [
         time_history(of, record) for of in (podium(2, 0.10, FLAT), podium(2, 0.9, 1.5))
@@ -308,7 +302,7 @@ def test_the_yardstick_sees_the_whole_record_when_the_structure_falls() -> None:
     assert fallen.floor_accelerations.tolist() == stout.floor_accelerations.tolist()
 
 
-def test_the_yardstick_goes_on_through_the_free_vibration() -> None:
+def test_the_yardstick_goes_on_through_the_free_vibration():
     """A pulse just before the end of the record: the building answers after it."""
     record = ground(np.concatenate((np.zeros(20), [0.0, 1.0, 1.0])), 0.02)
     result = time_history(podium(3), record, TimeHistorySettings(free_vibration=0.5))
@@ -321,7 +315,7 @@ def test_the_yardstick_goes_on_through_the_free_vibration() -> None:
     assert shears.tolist() == fixed.storey_shears.tolist()
 
 
-def test_a_frame_has_no_yardstick() -> None:
+def test_a_frame_has_no_yardstick():
     record = ground([0.0, 1.0, 0.0], 0.02)
     assert time_history(podium(0), record, SETTINGS).fixed_base is None
     assert time_history(podium(1), record, with_fixed_base=False).fixed_base is None
@@ -344,9 +338,9 @@ def test_a_frame_has_no_yardstick() -> None:
         ("initial_rotation", math.nan),
     ],
 )
-def test_settings_that_no_history_ends_with_are_refused(name: str, value: object) -> None:
+def test_settings_that_no_history_ends_with_are_refused(name, value):
     with pytest.raises(ValueError, match=rf"{name} = .* must be"):
-        TimeHistorySettings(**{name: value})  # type: ignore[arg-type]
+        TimeHistorySettings(**{name: value})
 
 
 AT_ONCE = TimeHistorySettings(free_vibration=0.0)
@@ -354,13 +348,13 @@ DAMPED = replace(podium(3), devices=(ViscousDamper(1e5),))
 FINE = 1e-5
 
 
-def swaying(samples: int) -> GroundMotion:
+def swaying(samples):
     return ground(3.0 * np.sin(np.arange(samples) * FINE * 12.0), FINE)
 
 
 @needs_compiled_kernels
 @pytest.mark.parametrize("structure", [podium(6), DAMPED], ids=["six storeys", "damper"])
-def test_memory_is_what_the_ceiling_counts(structure: PodiumStructure) -> None:
+def test_memory_is_what_the_ceiling_counts(structure):
     record = swaying(100_000)
     time_history(structure, swaying(100), AT_ONCE)  # loads the kernels
     tracemalloc.start()
@@ -381,7 +375,7 @@ def test_memory_is_what_the_ceiling_counts(structure: PodiumStructure) -> None:
     assert peak < 1.3 * counted + lines
 
 
-def test_histories_over_the_ceiling_are_refused() -> None:
+def test_histories_over_the_ceiling_are_refused():
     many = podium(40)
     record = ground(np.zeros(2), 1e-5)
     rows = 12_000_003

@@ -1,14 +1,11 @@
 """What a history says of storeys that yield: samples, largest demands, energy, tables, limits."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from paper_structures import (
-    RecordLoader,
     building,
     known,
     needs_compiled_kernels,
@@ -21,7 +18,6 @@ from paper_structures import (
 import rpscli
 from rpscli.analyses.demand import demand
 from rpscli.analyses.result_quantities import STOREYS_YIELDING, YIELDING
-from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.impact import ImpactLaw
@@ -46,18 +42,18 @@ K, F = ABOVE.stiffnesses, known(ABOVE.strengths)
 
 
 @pytest.fixture(scope="module")
-def result() -> TimeHistoryResult:
+def result():
     return time_history(STRUCTURE, RECORD, SETTINGS)
 
 
 @pytest.fixture(scope="module")
-def pair() -> TimeHistoryResult:
+def pair():
     across = replace(building(3, 0.5), strengths=1.3 * F, hardening=0.1)
     both = replace(STRUCTURE, superstructure_y=across)
     return time_history(both, MotionComponents(RECORD.scaled(0.6), y=OTHER), SETTINGS)
 
 
-def test_largest_demands_are_those_of_the_samples(result: TimeHistoryResult) -> None:
+def test_largest_demands_are_those_of_the_samples(result):
     """Which are dense: within steps there is little more."""
     trace, plastic = result.trace, known(result.trace.plastic_drifts)
     largest = np.abs(trace.drifts).max(axis=0)
@@ -84,16 +80,14 @@ def test_largest_demands_are_those_of_the_samples(result: TimeHistoryResult) -> 
     )  # none is beyond the lines on which it yields
 
 
-def test_largest_demands_need_no_samples(result: TimeHistoryResult) -> None:
+def test_largest_demands_need_no_samples(result):
     alone = demand(STRUCTURE, RECORD, SETTINGS)
     for quantity in (*YIELDING, *STOREYS_YIELDING):
         one, other = (np.asarray(getattr(of, quantity.name)) for of in (alone, result))
         assert np.array_equal(one, other), quantity.name
 
 
-def test_of_both_components_results_are_resultants_or_the_larger(
-    pair: TimeHistoryResult,
-) -> None:
+def test_of_both_components_results_are_resultants_or_the_larger(pair):
     x, y = pair.trace, known(pair.trace.y)
     slips = np.stack([known(x.plastic_drifts), known(y.plastic_drifts)])
     across = known(pair.structure.superstructure_y)
@@ -111,9 +105,7 @@ def test_of_both_components_results_are_resultants_or_the_larger(
     )
 
 
-def test_files_and_tables_have_them(
-    result: TimeHistoryResult, pair: TimeHistoryResult
-) -> None:
+def test_files_and_tables_have_them(result, pair):
     document = timehistory_document(result)
     for quantity in (*YIELDING, *STOREYS_YIELDING):
         assert quantity.name in document
@@ -136,7 +128,7 @@ def test_files_and_tables_have_them(
     )
 
 
-def test_an_elastic_building_has_none_of_it() -> None:
+def test_an_elastic_building_has_none_of_it():
     elastic = time_history(podium(3), RECORD, SETTINGS)
     names = {quantity.name for quantity in (*YIELDING, *STOREYS_YIELDING)}
     document = timehistory_document(elastic)
@@ -150,7 +142,7 @@ def test_an_elastic_building_has_none_of_it() -> None:
     assert not [head for head in heads if "plastic" in head or "yield" in head]
 
 
-def test_hardening_drives_back_what_has_not_come_to_rest() -> None:
+def test_hardening_drives_back_what_has_not_come_to_rest():
     """As long as the back force exceeds the strength; a record that ends in the first swing."""
     soft = replace(building(1), strengths=np.array([1e5]), hardening=0.5)
     pushed = replace(podium(1, superstructure=soft), bearing=podium(1, 0.8).bearing)
@@ -162,7 +154,7 @@ def test_hardening_drives_back_what_has_not_come_to_rest() -> None:
     assert not rested.driven_back.any()
 
 
-def test_studies_vary_strengths_and_judge_the_ductility() -> None:
+def test_studies_vary_strengths_and_judge_the_ductility():
     case = Path(__file__).parents[2] / "cases" / "yielding_storeys.yaml"
     asked = {
         "rps": 1, "base": str(case), "records": ["pulse:sine?amplitude=0.5g&period=0.6"],
@@ -195,13 +187,7 @@ def test_studies_vary_strengths_and_judge_the_ductility() -> None:
     [(3, (0.92, 0.54, 1.05), (0.59, 0.57, 0.70), (1.8, 3.0, 4.6)),
      (6, (0.72, 0.52, 0.91), (0.77, 0.72, 0.85), (1.1, 1.5, 2.0, 3.3, 4.8, 5.8))],
 )  # fmt: skip
-def test_sizes_of_the_theory(
-    storeys: int,
-    rotation: tuple[float, ...],
-    shear: tuple[float, ...],
-    ductility: tuple[float, ...],
-    fema_record: RecordLoader,
-) -> None:
+def test_sizes_of_the_theory(storeys, rotation, shear, ductility, fema_record):
     """Under the far-field components, of histories that stand with and without strengths."""
     elastic = podium(storeys, law=ImpactLaw())
     above = yielding(building(storeys), 1.3 * elastic.static_base_shear, 0.05)

@@ -11,17 +11,13 @@ two new parameters; constants of the phase are parameters too. theta = 0 and the
 terminal events. Nothing of the program's kernels is used.
 """
 
-from __future__ import annotations
-
 import importlib
 import math
 import time
-from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from rich import box
 from rich.console import Console
 from rich.table import Table
@@ -37,12 +33,9 @@ from rpscli.model.superstructure import (
     Superstructure,
     profile_stiffnesses,
 )
-from rpscli.physics.laws.geometry import Phase
 from rpscli.physics.state import IMPACT, LANES
-from rpscli.records.ground_motion import GroundMotion, MotionComponents
+from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.loading import load_record
-
-Floats = NDArray[np.float64]
 
 NEGLIGIBLE = 1e-6
 """An excursion below this times alpha is not followed: the podium locks."""
@@ -65,7 +58,7 @@ class PeerHistory(NamedTuple):
     impacts: int
 
 
-def building_of(podium: PodiumStructure) -> tuple[Superstructure, float, float]:
+def building_of(podium):
     """The building and its coefficients of Rayleigh's damping."""
     building = podium.superstructure
     assert building is not None
@@ -76,7 +69,7 @@ def building_of(podium: PodiumStructure) -> tuple[Superstructure, float, float]:
 class Landing:
     """Impacts of one podium, with the right-hand side at x = 0 prepared: it is linear there."""
 
-    def __init__(self, podium: PodiumStructure) -> None:
+    def __init__(self, podium):
         (building, a0, a1), R = building_of(podium), podium.bearing.semi_diagonal
         n, gamma, eta, alpha = (
             podium.storeys,
@@ -104,7 +97,7 @@ class Landing:
         """What decelerates the tilt behind the last impact [rad/s2]."""
         self.building = 2.0 * cosine / (podium.columns_mass * R) / A * shear
 
-    def land(self, y: Floats, across: float) -> bool:
+    def land(self, y, across):
         """Impact: change the mirrored state to that of the other side; whether the podium locks.
 
         `across` is the ground acceleration as mirrored on the side that is left.
@@ -123,7 +116,7 @@ class Landing:
         return bool(stays)
 
 
-def equations(podium: PodiumStructure) -> list[tuple[Any, Any]]:
+def equations(podium):
     """The mirrored equations of motion as heyoka's expressions."""
     import heyoka as hy
 
@@ -169,7 +162,7 @@ def equations(podium: PodiumStructure) -> list[tuple[Any, Any]]:
 class HeyokaStanding:
     """A compiled integrator of the building on a fixed base, with uplift as its terminal event."""
 
-    def __init__(self, podium: PodiumStructure, dt: float, tol: float) -> None:
+    def __init__(self, podium, dt, tol):
         import heyoka as hy
 
         (building, _, _), n, self.dt = building_of(podium), podium.storeys, dt
@@ -182,7 +175,7 @@ class HeyokaStanding:
         z = hy.make_vars(*names)
         across = hy.par[ACROSS] + hy.par[SLOPE] * hy.time
 
-        def weighted(row: Floats) -> Any:
+        def weighted(row):
             return hy.sum([float(w) * x for w, x in zip(row, z, strict=True) if w != 0.0])
 
         rates = [*z[n:], *(weighted(flow[i]) - across for i in range(n))]
@@ -198,14 +191,7 @@ class HeyokaStanding:
             ],
         )
 
-    def stand(
-        self,
-        z: Floats,
-        slopes: list[float],
-        intercepts: list[float],
-        interval: int,
-        after: float,
-    ) -> tuple[int, float, float]:
+    def stand(self, z, slopes, intercepts, interval, after):
         """From `after` seconds into an interval to the next uplift, or to the record's end.
 
         Of a record of given slopes and values at time zero. Returns the interval, the time into it
@@ -233,7 +219,7 @@ class HeyokaStanding:
 class HeyokaRocking:
     """Compiled integrators for one podium."""
 
-    def __init__(self, structure: PodiumStructure, dt: float, tol: float = 1e-4) -> None:
+    def __init__(self, structure, dt, tol=1e-4):
         import heyoka as hy
 
         podium = self.podium = structure
@@ -258,10 +244,10 @@ class HeyokaRocking:
         )
         self.integrator.pars[LEVEL] = self.level
         self._peak, self._impacts = 0.0, 0
-        self._slopes: list[float] = []
-        self._intercepts: list[float] = []
+        self._slopes = []
+        self._intercepts = []
 
-    def history(self, record: Floats) -> PeerHistory:
+    def history(self, record):
         """One history from rest to the end of the record; infinite rotation if it overturns."""
         n, dt = self.podium.storeys, self.dt
         slopes = np.diff(record) / dt
@@ -283,7 +269,7 @@ class HeyokaRocking:
             z[n:] = side * (y[n + 2 :] - self.landing.beam * y[n + 1])
         return PeerHistory(self._peak, self._impacts)
 
-    def _fly(self, interval: int, after: float, side: float) -> tuple[int, float, float]:
+    def _fly(self, interval, after, side):
         """From an uplift to re-contact: interval, time into it, and side of the state."""
         ta, n, dt = self.integrator, self.podium.storeys, self.dt
         step, land = ta.step, self.landing.land
@@ -328,12 +314,12 @@ class HeyokaRocking:
         self._peak = float(peak)
         return len(slopes), 0.0, side
 
-    def _enter(self, phase: Phase) -> None:
+    def _enter(self, phase):
         pars, (p, q, c, u0, _) = self.integrator.pars, phase
         pars[P], pars[Q], pars[CURVE], pars[SHIFT] = p, q, c, u0
         pars[SQUARE] = p * p + q * q - c * c
 
-    def _turning_point(self, h: float) -> float:
+    def _turning_point(self, h):
         """The tilt where its rate is zero within the last step, by its dense output."""
         ta, n = self.integrator, self.podium.storeys
         low, high = ta.time - h, ta.time
@@ -346,7 +332,7 @@ class HeyokaRocking:
         return float(ta.update_d_output(low)[0])
 
 
-def refuse_failure(code: int) -> None:
+def refuse_failure(code):
     """Stop if a step did not end well."""
     if code not in GOOD:
         raise RuntimeError(f"heyoka stopped with {code}")
@@ -369,7 +355,7 @@ COLUMNS = (
 _CONSOLE = Console(width=132, highlight=False)
 
 
-def installed(module: str) -> bool:
+def installed(module):
     """Whether a peer can be imported; says so at once if not."""
     try:
         importlib.import_module(module)
@@ -385,7 +371,7 @@ def installed(module: str) -> bool:
     return True
 
 
-def structure(storeys: int) -> PodiumStructure:
+def structure(storeys):
     """The paper's building: T_1 = n/10 s, gamma = 10, eta = n, the rigid law."""
     masses = np.full(storeys, 2e5)
     stiffnesses = profile_stiffnesses(masses, storeys / 10, "sine")
@@ -404,21 +390,17 @@ class Contest:
     rotations: list[float]
     impacts: list[int]
 
-    def close(self, exact: Sequence[float], limit: float) -> str:
+    def close(self, exact, limit):
         """Share of those that agree with a reference, whose overturned ones are left out."""
         standing = np.array(exact) < limit
         off = np.abs(np.array(self.rotations) / exact - 1.0)[standing]
         return f"{np.mean(off < CLOSE):.0%} of {off.size}" if off.size else "none"
 
 
-def run(
-    name: str,
-    program: Callable[[GroundMotion], PeerHistory],
-    records: Sequence[GroundMotion],
-) -> Contest:
+def run(name, program, records):
     """Each record by itself, the least time of five rounds through all of them."""
     program(records[0])  # may compile
-    found: dict[int, PeerHistory] = {}
+    found = {}
     times = [np.inf] * len(records)
     for _ in range(5):
         for i, record in enumerate(records):
@@ -431,22 +413,20 @@ def run(
     )
 
 
-def contests(
-    building: PodiumStructure, records: Sequence[GroundMotion], *, heyoka: bool
-) -> Iterator[Contest]:
+def contests(building, records, *, heyoka):
     """A peer; one history of ours with its samples, one without, and in lanes."""
 
-    def requests(chosen: Sequence[GroundMotion]) -> list[Request]:
+    def requests(chosen):
         # without free vibration every history is as long as its record
         settings = TimeHistorySettings(free_vibration=0.0)
         return [Request(building, MotionComponents(r), settings) for r in chosen]
 
-    def sampled(record: GroundMotion) -> PeerHistory:
+    def sampled(record):
         (request,) = requests([record])
         history = sampled_history(building, request.motion, request.settings).history
         return PeerHistory(float(history.max_theta), int(history.events[IMPACT]))
 
-    def alone(record: GroundMotion) -> PeerHistory:
+    def alone(record):
         (found,) = demands(requests([record]), worth_lanes=ALONE)
         return PeerHistory(found.max_rotation, found.impacts)
 
@@ -466,9 +446,7 @@ def contests(
     yield Contest(f"rps, {len(often)} in {LANES} lanes", each, rotations, impacts)
 
 
-def rows(
-    storeys: int, records: Sequence[GroundMotion], *, heyoka: bool
-) -> Iterator[list[str]]:
+def rows(storeys, records, *, heyoka):
     """All lines for one building."""
     building = structure(storeys)
     settings = TimeHistorySettings(free_vibration=0.0, accuracy=TIGHT)
@@ -487,7 +465,7 @@ def rows(
         yield [str(storeys), c.name, *numbers, c.close(exact, limit), impacts]
 
 
-def main() -> None:
+def main():
     """Measure, and print one table that Markdown understands."""
     heyoka = installed("heyoka")
     sources = (

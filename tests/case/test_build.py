@@ -1,7 +1,5 @@
 """What a case describes is what is built: building, podium, devices, both directions, settings."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import fields
 
@@ -22,11 +20,9 @@ from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import CaseError
 from rpscli.model import devices
 from rpscli.model.bearing import Bearing
-from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.superstructure import (
     ModalDamping,
     RayleighDamping,
-    Superstructure,
     profile_stiffnesses,
 )
 from rpscli.records.loading import load_record
@@ -39,15 +35,15 @@ ROUNDING = 1e-13
 RIGID_FRAME = "cases/rigid_frame.yaml"
 
 
-def built(*overrides: str, text: str = BUILDING) -> PodiumStructure:
+def built(*overrides, text=BUILDING):
     return case_of(*overrides, text=text).structure
 
 
-def floors(*overrides: str, text: str = BUILDING) -> Superstructure:
+def floors(*overrides, text=BUILDING):
     return known(built(*overrides, text=text).superstructure)
 
 
-def test_the_building_of_ratios() -> None:
+def test_the_building_of_ratios():
     structure = built()
     assert structure.cap_beam_mass == pytest.approx(2e5, rel=ROUNDING)
     assert structure.columns_mass == pytest.approx(2e4, rel=ROUNDING)
@@ -58,7 +54,7 @@ def test_the_building_of_ratios() -> None:
     assert floors().storey_heights == pytest.approx([3.0, 3.0, 3.0], abs=0.0)
 
 
-def test_lists_go_from_the_bottom() -> None:
+def test_lists_go_from_the_bottom():
     masses = "superstructure.storey_mass=[3 t, 2 t, 1 t]"
     above = floors(
         masses, "superstructure.profile=linear", "superstructure.damping={ratio: 0.02}"
@@ -74,16 +70,16 @@ def test_lists_go_from_the_bottom() -> None:
 
 
 @pytest.mark.parametrize(("old", "new"), [("  profile: sine\n", ""), ("200 t", "2.0e5")])
-def test_two_ways_to_say_the_same(old: str, new: str) -> None:
+def test_two_ways_to_say_the_same(old, new):
     assert case_of(text=BUILDING.replace(old, new)).document == case_of().document
 
 
-def test_one_storey_takes_two_modes() -> None:
+def test_one_storey_takes_two_modes():
     above = floors("superstructure.storeys=1", "superstructure.damping.modes=[1, 2]")
     assert above.damping_ratios.tolist() == pytest.approx([0.05], rel=1e-9)
 
 
-def test_strengths_follow_a_ratio_or_are_given() -> None:
+def test_strengths_follow_a_ratio_or_are_given():
     """F_1 = ratio V_st, upwards as the shears of a first mode sin(pi i/6), in x and in y."""
     structure = built("superstructure.yield={ratio: 1.3}", "superstructure.y={profile: linear}",
                       "superstructure.y.period=0.4")  # fmt: skip
@@ -102,7 +98,7 @@ def test_strengths_follow_a_ratio_or_are_given() -> None:
     assert floors().strengths is None
 
 
-def test_spherical_ends_have_no_ratio_of_strengths() -> None:
+def test_spherical_ends_have_no_ratio_of_strengths():
     round_ends = "podium.bearing.slenderness=0", "podium.bearing.curvature_ratio=0.6"
     with pytest.raises(
         CaseError, match=r"yield.ratio: columns without a flat part have no V_st"
@@ -146,9 +142,7 @@ MASSES = "cap_beam_mass: 200 t\n  column_mass: 5 t\n  columns: 4"
         (FRAME, MASSES, "cap_beam_mass: 0\n  column_mass: 5 t\n  columns: 3", 1.5e4, 0.0),
     ],
 )
-def test_masses_in_every_way(
-    text: str, old: str, given: str, columns: float, beam: float
-) -> None:
+def test_masses_in_every_way(text, old, given, columns, beam):
     assert old in text
     structure = built(text=text.replace(old, given))
     assert (structure.columns_mass, structure.cap_beam_mass) == pytest.approx(
@@ -157,7 +151,7 @@ def test_masses_in_every_way(
     assert (structure.superstructure is None) == (text == FRAME)
 
 
-def test_keys_of_an_absent_building_are_warned_of() -> None:
+def test_keys_of_an_absent_building_are_warned_of():
     without = ["superstructure.storeys=0", "podium.superstructure_mass_ratio=null"]
     case = case_of(*without, "podium.cap_beam_mass=200 t")
     assert case.structure.superstructure is None
@@ -167,7 +161,7 @@ def test_keys_of_an_absent_building_are_warned_of() -> None:
     assert case_of().warnings == ()
 
 
-def test_dimensions_are_full_sizes() -> None:
+def test_dimensions_are_full_sizes():
     bearing = built(text=FRAME).bearing
     assert bearing.half_height == pytest.approx(1.5, rel=ROUNDING)
     assert bearing.half_width == pytest.approx(0.2, rel=ROUNDING)
@@ -182,9 +176,7 @@ def test_dimensions_are_full_sizes() -> None:
     rho=st.floats(0.5, 3.0),
     diagonal=st.floats(0.1, 10.0),
 )
-def test_sizes_and_ratios_describe_one_column(
-    slenderness: float, widening: float, rho: float, diagonal: float
-) -> None:
+def test_sizes_and_ratios_describe_one_column(slenderness, widening, rho, diagonal):
     podium = "cap_beam_mass: 2 t\n  cap_beam_mass_ratio: 1\n"
     head = "rps: 1\nsuperstructure: {storeys: 0}\npodium:\n  " + podium + "  bearing: "
     wedge = slenderness * widening
@@ -209,14 +201,14 @@ def test_sizes_and_ratios_describe_one_column(
 
 
 @pytest.mark.parametrize("wedge", ["0.3", "0.01", "null"])
-def test_flat_ends_ignore_the_wedge(wedge: str) -> None:
+def test_flat_ends_ignore_the_wedge(wedge):
     flat = "podium.bearing.curvature_ratio=0"
     bearing = built(flat, f"podium.bearing.wedge_slenderness={wedge}").bearing
     assert bearing.is_flat
     assert bearing.critical_rotation == pytest.approx(math.atan(0.15), rel=1e-12)
 
 
-def test_critical_curvature_and_spherical_ends() -> None:
+def test_critical_curvature_and_spherical_ends():
     case = case_of(
         "podium.bearing.curvature_ratio=critical", "podium.bearing.slenderness=0.2"
     )
@@ -228,7 +220,7 @@ def test_critical_curvature_and_spherical_ends() -> None:
         assert bearing.is_spherical == (slenderness == 0)
 
 
-def test_impact_laws() -> None:
+def test_impact_laws():
     for written in ("{law: flexible}", "flexible"):
         assert built(f"podium.impact={written}").impact_law.kind == "flexible"
     value = "podium.impact={law: value, restitution: 0.92, factor: 0.5, loss: 1}"
@@ -239,7 +231,7 @@ def test_impact_laws() -> None:
     assert built().impact_law.contact_time == 2e-3
 
 
-def test_every_kind_of_device() -> None:
+def test_every_kind_of_device():
     case = case_of(text=EQUIPPED)
     assert case.structure.columns == 4
     assert case.structure.devices == (
@@ -258,7 +250,7 @@ def test_every_kind_of_device() -> None:
     assert "devices" not in case_of().document["podium"]
 
 
-def test_a_value_of_a_device_may_vary() -> None:
+def test_a_value_of_a_device_may_vary():
     changed = built("podium.devices.1.force=0.5 MN", text=EQUIPPED)
     assert changed.devices[1] == devices.FrictionDamper(5e5)
     assert built("podium.devices=[]", text=EQUIPPED).devices == ()
@@ -276,7 +268,7 @@ def test_a_value_of_a_device_may_vary() -> None:
         ("tendon", (-1.0, 1.0, 1.0)), ("rolling_resistance", (0.0,)),
     ],
 )  # fmt: skip
-def test_the_model_refuses_devices_too(kind: str, values: tuple[float, ...]) -> None:
+def test_the_model_refuses_devices_too(kind, values):
     with pytest.raises(ValueError, match="must be"):
         devices.DEVICES[kind](*values)
 
@@ -284,7 +276,7 @@ def test_the_model_refuses_devices_too(kind: str, values: tuple[float, ...]) -> 
 PAIR = "{x: 'pulse:sine?amplitude=1&period=1', y: 'pulse:sine?amplitude=2&period=1', rotation: 30}"
 
 
-def test_a_pair_of_sources() -> None:
+def test_a_pair_of_sources():
     case = case_of(f"record={PAIR}")
     assert case.record is not None
     assert (case.record.source[-19:], case.record.rotation) == (
@@ -298,7 +290,7 @@ def test_a_pair_of_sources() -> None:
     assert radians.rotation == pytest.approx(math.degrees(0.5), rel=1e-15)
 
 
-def test_another_stiffness_in_y() -> None:
+def test_another_stiffness_in_y():
     structure = built("superstructure.y={period: 0.5}")
     x, y = known(structure.superstructure), known(structure.superstructure_y)
     assert y.periods[0] == pytest.approx(0.5, rel=1e-9)
@@ -308,8 +300,8 @@ def test_another_stiffness_in_y() -> None:
     assert given.stiffnesses.tolist() == [3e6, 2e6, 1e6]
 
 
-def test_what_both_components_bring_in() -> None:
-    def told(*overrides: str, both: bool = True) -> str:
+def test_what_both_components_bring_in():
+    def told(*overrides, both=True):
         structure = built("podium.impact.law=flexible", *overrides)
         return "\n".join(map(str, doubts_of_directions(structure, both=both)))
 
@@ -321,7 +313,7 @@ def test_what_both_components_bring_in() -> None:
     assert "may roll away" in told("superstructure={storeys: 0}", free)
 
 
-def test_settings_of_the_analysis() -> None:
+def test_settings_of_the_analysis():
     case = case_of()
     assert case.analysis.free_vibration is None
     assert case.analysis.max_events == 100_000
@@ -332,7 +324,7 @@ def test_settings_of_the_analysis() -> None:
     assert case.analysis.initial_rotation == -0.05
 
 
-def test_a_rotation_beyond_the_overturning_limit_is_refused() -> None:
+def test_a_rotation_beyond_the_overturning_limit_is_refused():
     case = load_case(RIGID_FRAME)
     limit = case.analysis.overturning_limit * case.structure.critical_rotation
     load_case(RIGID_FRAME, [f"analysis.initial_rotation={limit * (1 - 1e-9)!r}"])
@@ -342,7 +334,7 @@ def test_a_rotation_beyond_the_overturning_limit_is_refused() -> None:
         load_case(RIGID_FRAME, [f"analysis.initial_rotation={limit!r}"])
 
 
-def test_an_overturning_limit_beyond_the_end_of_the_model_is_refused() -> None:
+def test_an_overturning_limit_beyond_the_end_of_the_model_is_refused():
     bearing = load_case(RIGID_FRAME).structure.bearing
     most = bearing.largest_rotation / bearing.critical_rotation
     load_case(RIGID_FRAME, [f"analysis.overturning_limit={most * (1 - 1e-9)!r}"])
@@ -359,10 +351,10 @@ def test_an_overturning_limit_beyond_the_end_of_the_model_is_refused() -> None:
         load_case(RIGID_FRAME, [*stout, law])
 
 
-def test_what_counts_as_overturned_is_the_lesser_of_what_the_case_names() -> None:
+def test_what_counts_as_overturned_is_the_lesser_of_what_the_case_names():
     structure = load_case(RIGID_FRAME).structure
     at_the_moat = structure.bearing.rotation_at(0.1) / structure.critical_rotation
-    named: list[tuple[dict[str, str], float]] = [
+    named = [
         ({}, 2.0),
         ({"displacement": "100 m"}, 2.0),
         ({"displacement": "0.1", "limit": "1.5"}, at_the_moat),
@@ -379,7 +371,7 @@ def test_what_counts_as_overturned_is_the_lesser_of_what_the_case_names() -> Non
 
 
 @pytest.mark.parametrize("displacement", [1e-6, 0.05, 0.4])
-def test_a_flat_column_moves_its_top_as_its_diagonal_turns(displacement: float) -> None:
+def test_a_flat_column_moves_its_top_as_its_diagonal_turns(displacement):
     """The far corner is 2R away under alpha: u_b = 2R (sin(alpha) - sin(alpha - theta))."""
     bearing = Bearing(1.5, 0.15, 0.15, 0.0)
     alpha = math.atan(0.15)
@@ -388,7 +380,7 @@ def test_a_flat_column_moves_its_top_as_its_diagonal_turns(displacement: float) 
 
 
 @pytest.mark.parametrize(("share", "overturns"), [(0.99, True), (1.01, False)])
-def test_a_moat_counts_as_overturning(share: float, overturns: bool) -> None:
+def test_a_moat_counts_as_overturning(share, overturns):
     record = load_record("pulse:sine?amplitude=0.3g&period=0.8")
     free = load_case(RIGID_FRAME)
     reached = demand(free.structure, record, free.analysis).max_cap_beam_displacement
@@ -399,7 +391,7 @@ def test_a_moat_counts_as_overturning(share: float, overturns: bool) -> None:
 
 
 @pytest.mark.parametrize("device", EQUIPMENT, ids=repr)
-def test_bounds_cover_the_stiffness_at_rest(device: Device) -> None:
+def test_bounds_cover_the_stiffness_at_rest(device):
     structure = equipped(0.5, device)
     x = np.linspace(0.0, structure.critical_rotation, 2001)
     force = np.broadcast_to(device.at_rest(structure, x, 0.0).restoring, x.shape)
@@ -413,7 +405,7 @@ def test_bounds_cover_the_stiffness_at_rest(device: Device) -> None:
 
 
 @pytest.mark.parametrize("name", devices.DEVICES)
-def test_a_law_can_be_written_and_drawn(name: str) -> None:
+def test_a_law_can_be_written_and_drawn(name):
     assert DRAWN.keys() == {*devices.DEVICES.values(), devices.OwnDamper}
     needed, optional = DEVICE_KEYS[name]
     assert {*needed, *optional} == {field.name for field in fields(devices.DEVICES[name])}

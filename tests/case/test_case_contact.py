@@ -1,9 +1,6 @@
 """`podium.contact`: what is read, what is refused and why, and what commands say of it."""
 
-from __future__ import annotations
-
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,18 +11,17 @@ from paper_structures import known
 from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
 from rpscli.cli import program
-from rpscli.model.podium import PodiumStructure
 from rpscli.report.figures.bearing import draw_end
 from rpscli.report.figures.structure import draw_mode
 
 from .conftest import BUILDING, EDGES, FLAT, PLANE, case_of
 
 
-def structure_of(*overrides: str) -> PodiumStructure:
+def structure_of(*overrides):
     return case_of(*FLAT, *overrides).structure
 
 
-def test_keys_and_their_defaults() -> None:
+def test_keys_and_their_defaults():
     """The three sizes describe the same joint; without the key ends are rigid."""
     assert structure_of().bed is None
     first = structure_of(PLANE)
@@ -43,7 +39,7 @@ def test_keys_and_their_defaults() -> None:
     ).bed  # the default, as in a case that was written out whole
 
 
-def printed(command: str, contact: str, folder: Path) -> str:
+def printed(command, contact, folder):
     """What a command prints, blanks as one."""
     case = folder / "c.yaml"
     case.write_text(
@@ -60,12 +56,12 @@ def printed(command: str, contact: str, folder: Path) -> str:
 
 
 @pytest.fixture
-def _no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+def _no_pictures(monkeypatch):
     monkeypatch.setattr("rpscli.report.figures.style.picture", lambda *_: b"a figure")
 
 
 @pytest.mark.usefixtures("_no_pictures")
-def test_what_commands_print(tmp_path: Path) -> None:
+def test_what_commands_print(tmp_path):
     """Each number from W, R, alpha and the law of one end, to the digits that are printed."""
     check = printed("check", PLANE, tmp_path)
     assert "period in full contact over T1 r 1.200" in check
@@ -101,8 +97,8 @@ def test_what_commands_print(tmp_path: Path) -> None:
     assert "stiffness after uplift" in printed("pushover", "title=stiff", tmp_path)
 
 
-def test_the_drawing_has_the_length_in_contact() -> None:
-    def drawn(contact: str) -> list[str]:
+def test_the_drawing_has_the_length_in_contact():
+    def drawn(contact):
         axes, structure = Figure().subplots(), structure_of(contact)
         draw_end(axes, structure.bearing, structure.bed)
         return [text for each in axes.texts if "contact" in (text := each.get_text())]
@@ -114,7 +110,7 @@ def test_the_drawing_has_the_length_in_contact() -> None:
     assert drawn(EDGES) == drawn("title=rigid") == []
 
 
-def test_moments_of_plane_joints_end_before_the_critical_rotation() -> None:
+def test_moments_of_plane_joints_end_before_the_critical_rotation():
     """Which stays that of rigid ends: alpha [1 - (2/3) sqrt(phi_u/alpha)] of slender columns."""
     structure = structure_of(PLANE)
     result, bed = pushover(structure), known(structure.bed)
@@ -127,7 +123,7 @@ def test_moments_of_plane_joints_end_before_the_critical_rotation() -> None:
     assert curve.force[-1] < 0.0
 
 
-def test_the_picture_of_modes_has_the_cap_beam_that_moves_in_full_contact() -> None:
+def test_the_picture_of_modes_has_the_cap_beam_that_moves_in_full_contact():
     result, figure = modal(structure_of(PLANE)), Figure()
     draw_mode(figure.subplots(), result, "rocking", 1)
     dashed = next(

@@ -1,10 +1,5 @@
 """The JSON schema says what each number is and how it is bounded."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator
-from typing import Any
-
 import pytest
 from paper_structures import known
 
@@ -23,7 +18,7 @@ UNITS = {
 }  # fmt: skip
 
 
-def resolved(schema: dict[str, Any]) -> dict[str, Any]:
+def resolved(schema):
     """A schema with its reference followed."""
     reference = schema.get("$ref")
     if reference is None:
@@ -31,21 +26,21 @@ def resolved(schema: dict[str, Any]) -> dict[str, Any]:
     return {**SCHEMA["$defs"][reference.rsplit("/", 1)[1]], **schema}
 
 
-def mapping(schema: dict[str, Any]) -> dict[str, Any]:
+def mapping(schema):
     """The form of a value that is a mapping, or a list of them, where it may be a plain number."""
     schema = resolved(schema).get("items", schema)
     forms = [resolved(form) for form in resolved(schema).get("oneOf", (schema,))]
     return next(form for form in forms if "properties" in form)
 
 
-def key(path: tuple[str | int, ...]) -> dict[str, Any]:
+def key(path):
     schema = SCHEMA
     for part in path:
         schema = mapping(schema)["properties"][part]
     return resolved(schema)
 
 
-def walk(value: object) -> Iterator[object]:
+def walk(value):
     yield value
     items = (
         value.values()
@@ -58,12 +53,12 @@ def walk(value: object) -> Iterator[object]:
         yield from walk(item)
 
 
-def test_numbers_have_units() -> None:
+def test_numbers_have_units():
     assert {name: key(path_of(name))["unit"] for name in UNITS} == UNITS
 
 
 @pytest.mark.parametrize("path", known_paths(CaseFile))
-def test_every_key_is_described(path: tuple[str | int, ...]) -> None:
+def test_every_key_is_described(path):
     found = key(path)
     assert found["description"]
     field = known(field_at(CaseFile, path))
@@ -71,7 +66,7 @@ def test_every_key_is_described(path: tuple[str | int, ...]) -> None:
     assert bounded or section_of(field.annotation)
 
 
-def test_bounds_words_lists_and_defaults() -> None:
+def test_bounds_words_lists_and_defaults():
     rho = key(("podium", "bearing", "curvature_ratio"))
     assert rho["anyOf"] == [{"type": "number", "minimum": 0}, {"enum": ["critical"]}]
     assert rho["symbol"] == "rho = r/2H"
@@ -83,7 +78,7 @@ def test_bounds_words_lists_and_defaults() -> None:
     assert key(("rps",))["maximum"] == 1
 
 
-def test_closed_and_without_null() -> None:
+def test_closed_and_without_null():
     sections = [
         at for at in walk(SCHEMA) if isinstance(at, dict) and at.get("type") == "object"
     ]

@@ -1,7 +1,5 @@
 """Values put over a case: from the command line as text, from a study as Python values."""
 
-from __future__ import annotations
-
 import copy
 
 import numpy as np
@@ -9,7 +7,7 @@ import pytest
 from paper_structures import known
 
 from rpscli.case.case import case_from_mapping
-from rpscli.case.overrides import Overrides, apply_overrides
+from rpscli.case.overrides import apply_overrides
 from rpscli.case.text.document import Document
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError
@@ -17,15 +15,13 @@ from rpscli.errors import CaseError
 from .conftest import BUILDING, FRAME, case_of, refusal
 
 
-def override_refusal(
-    overrides: Overrides, label: str = "--set", text: str = BUILDING
-) -> str:
+def override_refusal(overrides, label="--set", text=BUILDING):
     with pytest.raises(CaseError) as error:
         apply_overrides(read_yaml(text, "c.yaml"), overrides, label=label)
     return str(error.value)
 
 
-def test_values_are_yaml() -> None:
+def test_values_are_yaml():
     document = read_yaml(BUILDING, "c.yaml")
     before = copy.deepcopy(document.content)
     changed = apply_overrides(
@@ -52,12 +48,12 @@ def test_values_are_yaml() -> None:
     )
 
 
-def test_sections_that_are_not_written_come_into_being() -> None:
+def test_sections_that_are_not_written_come_into_being():
     record = known(case_of("record.source=a.at2", "record.scale=2", text=FRAME).record)
     assert (record.source, record.scale) == ("a.at2", 2.0)
 
 
-def test_null_takes_a_key_out() -> None:
+def test_null_takes_a_key_out():
     without = case_of(
         "podium.superstructure_mass_ratio=null", "podium.cap_beam_mass=150 t"
     )
@@ -65,7 +61,7 @@ def test_null_takes_a_key_out() -> None:
     assert case_of("record=null", "record.vertical=null").record is None
 
 
-def test_python_values_of_a_study() -> None:
+def test_python_values_of_a_study():
     document = read_yaml(BUILDING, "c.yaml")
     point = {
         "superstructure.storeys": np.int64(2),
@@ -83,7 +79,7 @@ def test_python_values_of_a_study() -> None:
     assert structure.impact_law.kind == "flexible"
 
 
-def test_a_fault_of_a_value_is_placed_at_its_override() -> None:
+def test_a_fault_of_a_value_is_placed_at_its_override():
     case = read_yaml(BUILDING, "c.yaml")
     with pytest.raises(CaseError) as error:
         case_from_mapping(
@@ -128,20 +124,20 @@ def test_a_fault_of_a_value_is_placed_at_its_override() -> None:
         ('title="\\ud800"', ["\": '\\ud800' holds half a letter"]),
     ],
 )
-def test_refusals(override: str, parts: list[str]) -> None:
+def test_refusals(override, parts):
     message = override_refusal([override])
     assert message.startswith(f"--set {override}:")
     for part in parts:
         assert part in message
 
 
-def test_a_key_below_a_list() -> None:
+def test_a_key_below_a_list():
     text = BUILDING.replace("{source: motion.at2}", "[a]")
     message = override_refusal(["record.source=b"], text=text)
     assert message == "--set record.source=b: record is a list, without a key source"
 
 
-def test_keys_of_a_study_are_checked_together() -> None:
+def test_keys_of_a_study_are_checked_together():
     lines = override_refusal(
         {"podium.foo": 1, "record.bar": 2}, label="vary"
     ).splitlines()
@@ -151,7 +147,7 @@ def test_keys_of_a_study_are_checked_together() -> None:
     ]
 
 
-def test_a_document_without_positions() -> None:
+def test_a_document_without_positions():
     document = Document("base", {"podium": {"columns": 2}})
     assert apply_overrides(document, ["podium.columns=3"]).content == {
         "podium": {"columns": 3}

@@ -1,7 +1,5 @@
 """Every inadmissible case is refused with place, value, rule and remedy: tables of refusals."""
 
-from __future__ import annotations
-
 import pytest
 
 from rpscli.case.case import case_from_mapping
@@ -20,9 +18,7 @@ from .conftest import (
     refusal,
 )
 
-Row = tuple[str, ...]
-
-OF_A_BUILDING: list[Row] = [
+OF_A_BUILDING = [
     # text, what stands in its place, beginning of the message, and parts of it
     ("storeys: 3", "storeys: 3.0", "3:12: superstructure.storeys = 3.0", "whole number; write 3"),
     ("storeys: 3", "storeys: three", "3:12: superstructure.storeys = 'three'", "whole number"),
@@ -166,7 +162,7 @@ OF_A_BUILDING: list[Row] = [
     ("rotation_ratio: 0.5}\n", "max_column_force: 1 kN}\n", "20:10: limits.max_column_force: the",
      "without the overturning moment and the shock of impacts", "podium.plan and superstructure.v"),
 ]  # fmt: skip
-OF_A_FRAME: list[Row] = [
+OF_A_FRAME = [
     ("radius: 1.2", "radius: 200 mm", "5:5", "curvature_ratio = 0.0666667 must be >="),
     ("wedge_width: 900 mm", "wedge_width: 300 mm", "5:5: podium.bearing.dimensions", ">= slender"),
     (", wedge_width: 900 mm", "", "5:5", "dimensions.wedge_width is missing", "flat ends"),
@@ -186,7 +182,7 @@ OF_A_FRAME: list[Row] = [
     ("  columns: 4", "  columns: 4\nlimits: {base_shear_ratio: 2}", "9:10", "storeys = 0 (line 2)"),
 ]  # fmt: skip
 FRICTION = "    - {kind: friction, force: 1}\n"
-OF_DEVICES: list[Row] = [
+OF_DEVICES = [
     ("force: 400 kN", "force: -1", "21:31: podium.devices.1.force = -1 must be > 0 N"),
     ("force: 400 kN", "force: 4 t", "21:31", "podium.devices.1.force = '4 t' is a mass, but must"),
     (", force: 400 kN", "", "21:7: podium.devices.1.force is missing: friction: F_d"),
@@ -210,7 +206,7 @@ OF_DEVICES: list[Row] = [
     ],
     ids=lambda value: " -> ".join(value[:2]) if isinstance(value, tuple) else "",
 )
-def test_a_refusal(text: str, row: Row) -> None:
+def test_a_refusal(text, row):
     old, new, start, *parts = row
     message = refusal(text, old, new)
     assert message.startswith(f"c.yaml:{start}")
@@ -223,14 +219,14 @@ def test_a_refusal(text: str, row: Row) -> None:
     ("key", "now"),
     [item for item in REMOVED.items() if not item[0].startswith("reports.")],
 )
-def test_a_removed_key_says_what_to_do_without_it(key: str, now: str) -> None:
+def test_a_removed_key_says_what_to_do_without_it(key, now):
     assert (
         refusal(BUILDING, overrides=[f"{key}=1"])
         == f"--set {key}=1: {key} is gone: {now}"
     )
 
 
-def test_a_section_under_the_wrong_parent() -> None:
+def test_a_section_under_the_wrong_parent():
     message = refusal(FRAME, "  bearing:\n    dimensions:", "  dimensions:")
     assert "3:1: podium.bearing is missing" in message
     assert "4:3: podium.dimensions" in message
@@ -305,16 +301,16 @@ TENDON = "[{kind: tendon, prestress: 1 kN, stiffness: 1 kN/mm}]"
         ((ROUND, "podium.column.section=oval"), "square or round"),
     ],
 )  # fmt: skip
-def test_overrides_that_are_refused(overrides: tuple[str, ...], reason: str) -> None:
+def test_overrides_that_are_refused(overrides, reason):
     assert reason in refusal(BUILDING, overrides=overrides)
 
 
 @pytest.mark.parametrize("overrides", [FLAT, SPHERE, ON_PLANE, ON_EDGES, PLAIN_FRAME])
-def test_what_they_are_put_over_is_valid(overrides: tuple[str, ...]) -> None:
+def test_what_they_are_put_over_is_valid(overrides):
     assert case_of(*overrides).structure.restitution > 0.0
 
 
-def test_faults_of_keys_together_in_order_then_those_between_keys() -> None:
+def test_faults_of_keys_together_in_order_then_those_between_keys():
     text = BUILDING.replace("period: 0.3", "period: -1").replace(
         "law: rigid", "lw: rigid"
     )
@@ -343,13 +339,13 @@ def test_faults_of_keys_together_in_order_then_those_between_keys() -> None:
 
 
 @pytest.mark.parametrize("text", ["podium: 3", "podium: [1]", "podium: text", "podium:"])
-def test_a_section_that_is_no_mapping(text: str) -> None:
+def test_a_section_that_is_no_mapping(text):
     message = refusal(f"rps: 1\nsuperstructure: {{storeys: 0}}\n{text}\n")
     assert message.startswith("c.yaml:3:")
     assert "\n" not in message
 
 
-def test_a_mapping_in_memory_has_its_name_for_a_place() -> None:
+def test_a_mapping_in_memory_has_its_name_for_a_place():
     with pytest.raises(CaseError) as error:
         case_from_mapping(
             {"rps": 1, "superstructure": {"storeys": 0}, "podium": {}}, "base of x"
@@ -357,8 +353,8 @@ def test_a_mapping_in_memory_has_its_name_for_a_place() -> None:
     assert str(error.value).splitlines()[0].startswith("base of x: podium")
 
 
-def test_what_only_the_model_refuses_is_placed(monkeypatch: pytest.MonkeyPatch) -> None:
-    def refusing(*_: object) -> None:
+def test_what_only_the_model_refuses_is_placed(monkeypatch):
+    def refusing(*_):
         raise ValueError("no such column")
 
     monkeypatch.setattr("rpscli.case.structure.built", refusing)

@@ -1,7 +1,5 @@
 """The cases that come with the program: valid, and the same again from their resolved form."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 
@@ -9,7 +7,7 @@ import pytest
 from paper_structures import known
 
 from rpscli.analyses.kernels.systems import stacked_systems
-from rpscli.case.case import Case, load_case, parse_case
+from rpscli.case.case import load_case, parse_case
 from rpscli.case.text.files import starter_text
 
 FOLDER = Path(__file__).parents[2] / "cases"
@@ -20,14 +18,14 @@ NAMES = [
 ]  # fmt: skip
 
 
-def case(name: str) -> Case:
+def case(name):
     if name == "starter":
         return parse_case(starter_text(), name="starter.yaml")
     return load_case(FOLDER / f"{name}.yaml")
 
 
 @pytest.mark.parametrize("name", [*NAMES, "starter"])
-def test_it_loads_and_comes_back(name: str) -> None:
+def test_it_loads_and_comes_back(name):
     first = case(name)
     text = json.dumps(first.document, allow_nan=False)
     second = parse_case(text, name=f"{name}.json", folder=first.folder)
@@ -44,21 +42,21 @@ def test_it_loads_and_comes_back(name: str) -> None:
     assert of_kernels[0].tobytes() == of_kernels[1].tobytes()
 
 
-def test_every_case_of_the_folder_is_tested() -> None:
+def test_every_case_of_the_folder_is_tested():
     folder = {
         path.stem for path in FOLDER.glob("*.yaml") if "\nbase:" not in path.read_text()
     }
     assert folder == set(NAMES)
 
 
-def test_the_measured_column_in_ratios() -> None:
+def test_the_measured_column_in_ratios():
     structure = case("measured_column").structure
     assert structure.bearing.slenderness == pytest.approx(0.1498, abs=5e-5)  # 445/2970
     assert structure.bearing.curvature_ratio == pytest.approx(0.5, rel=1e-15)
     assert structure.columns_mass == 6 * 4300.0
 
 
-def test_the_block_is_the_one_of_its_comment() -> None:
+def test_the_block_is_the_one_of_its_comment():
     bearing = case("free_standing_block").structure.bearing
     assert (bearing.half_width, bearing.half_height) == pytest.approx(
         (0.5, 1.5), rel=1e-15
@@ -66,7 +64,7 @@ def test_the_block_is_the_one_of_its_comment() -> None:
     assert case("free_standing_block").structure.gamma == 0.0
 
 
-def test_what_the_starter_offers_as_alternatives_is_valid() -> None:
+def test_what_the_starter_offers_as_alternatives_is_valid():
     """Its commented lines, put in the place of those that they replace."""
     text = (
         starter_text()

@@ -1,7 +1,5 @@
 """Numbers with units become SI; anything else names the dimension that is expected."""
 
-from __future__ import annotations
-
 import math
 import re
 
@@ -19,7 +17,7 @@ from rpscli.units import FOOT, INCH, KINDS, POUND, POUND_FORCE, si_factor, si_va
 ROUNDING = 1e-14
 KIP = 1e3 * POUND_FORCE
 
-FACTORS: dict[str, dict[str, float]] = {
+FACTORS = {
     "m": {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 1e-3, "km": 1e3, "ft": FOOT, "in": INCH},
     "kg": {"kg": 1.0, "t": 1e3, "Mg": 1e3, "lb": POUND},
     "s": {"s": 1.0, "ms": 1e-3, "min": 60.0},
@@ -39,7 +37,7 @@ FACTORS: dict[str, dict[str, float]] = {
     "deg": {"deg": 1.0, "rad": 180.0 / math.pi},
 }  # fmt: skip
 
-UNUSUAL: dict[str, dict[str, float]] = {
+UNUSUAL = {
     "m": {"µm": 1e-06, "kilometres": 1000.0, "inches": 0.0254, "feet": 0.30479999999999996,
         "yards": 0.9144, "millimeter": 0.001},
     "kg": {"mg": 1e-06, "g": 0.001, "kilograms": 1.0, "pounds": 0.4535923700000001,
@@ -68,7 +66,7 @@ UNUSUAL: dict[str, dict[str, float]] = {
         ("30 kN/mm", "N/m", 3e7), ("981 cm/s2", "m/s2", 9.81), ("9.81 m/s^2", "m/s2", 9.81),
     ],
 )  # fmt: skip
-def test_si(text: str, unit: str, value: float) -> None:
+def test_si(text, unit, value):
     assert si_value(text, unit) == pytest.approx(value, rel=ROUNDING)
 
 
@@ -96,7 +94,7 @@ def test_si(text: str, unit: str, value: float) -> None:
         ("9.81 m/^s2", "m/s2", ["unknown unit"]),
     ],
 )
-def test_refusals_name_the_dimension(text: str, unit: str, parts: list[str]) -> None:
+def test_refusals_name_the_dimension(text, unit, parts):
     with pytest.raises(ValueError, match=re.escape(parts[0])) as error:
         si_value(text, unit)
     for part in parts:
@@ -105,7 +103,7 @@ def test_refusals_name_the_dimension(text: str, unit: str, parts: list[str]) -> 
 
 
 @given(st.from_regex(r"[0-9.]{1,3} ?[a-zA-Zµ0-9*/^() %.-]{0,12}", fullmatch=True))
-def test_any_text_is_a_number_or_refused(text: str) -> None:
+def test_any_text_is_a_number_or_refused(text):
     reason = ""
     try:
         assert isinstance(si_value(text, "m"), float)
@@ -115,26 +113,24 @@ def test_any_text_is_a_number_or_refused(text: str) -> None:
 
 
 @pytest.mark.parametrize(("unit", "written"), FACTORS.items())
-def test_factors_are_those_of_the_definitions(
-    unit: str, written: dict[str, float]
-) -> None:
+def test_factors_are_those_of_the_definitions(unit, written):
     # Units of the first rank agree in every digit, whichever way they are written.
     for name, factor in written.items():
         assert si_factor(name, unit) == factor, name
 
 
 @pytest.mark.parametrize(("unit", "written"), UNUSUAL.items())
-def test_unusual_units_are_those_of_pint(unit: str, written: dict[str, float]) -> None:
+def test_unusual_units_are_those_of_pint(unit, written):
     for name, factor in written.items():
         assert si_factor(name, unit) == pytest.approx(factor, rel=ROUNDING), name
 
 
 @pytest.mark.parametrize("unit", KINDS)
-def test_units_that_messages_propose_are_common(unit: str) -> None:
+def test_units_that_messages_propose_are_common(unit):
     assert set(KINDS[unit][1]) <= set(FACTORS[unit])
 
 
-def test_values_at_equal_spaces() -> None:
+def test_values_at_equal_spaces():
     assert ValueRange(low=0.1, high=0.3, count=3).values == (0.1, 0.2, 0.3)
     assert ValueRange(low=0.1, high=10.0, count=3, spacing="log").values == (
         0.1,
@@ -143,7 +139,7 @@ def test_values_at_equal_spaces() -> None:
     )
 
 
-def test_what_a_record_is_scaled_to() -> None:
+def test_what_a_record_is_scaled_to():
     assert (scale_to_of("PGV=50 cm/s").value, scale_to_of("Sa(0.6 s)=0.5 g").period) == (
         0.5,
         0.6,
@@ -152,7 +148,7 @@ def test_what_a_record_is_scaled_to() -> None:
     assert scale_to_of("Sa(0.6 s, geomean)=1 g").of == "geomean"
 
 
-def test_values_of_observed_systems() -> None:
+def test_values_of_observed_systems():
     diagonal = "podium.bearing.semi_diagonal"
     assert comparable(diagonal, "1500 mm") == comparable(diagonal, 1.5) == "1.5"
     assert (comparable("title", "tower A"), comparable("scale", "0.50")) == (

@@ -1,11 +1,8 @@
 """Files that are none, too large, or written to keep a reader busy: each is named."""
 
-from __future__ import annotations
-
 import io
 import os
 import threading
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -24,14 +21,14 @@ from rpscli.tools.identify.command import measured
 from .conftest import BUILDING, refusal
 
 
-def of_file(source: Path | str) -> str:
+def of_file(source):
     """What a file is refused with."""
     with pytest.raises(CaseError) as error:
         load_case(source)
     return str(error.value)
 
 
-def test_a_case_knows_where_it_comes_from(tmp_path: Path) -> None:
+def test_a_case_knows_where_it_comes_from(tmp_path):
     path = tmp_path / "tower.yaml"
     path.write_bytes(b"\xef\xbb\xbf" + BUILDING.replace("\n", "\r\n").encode())
     case = load_case(path)
@@ -39,7 +36,7 @@ def test_a_case_knows_where_it_comes_from(tmp_path: Path) -> None:
     assert case.source == str(path)
 
 
-def test_missing_file_names_the_nearest(tmp_path: Path) -> None:
+def test_missing_file_names_the_nearest(tmp_path):
     (tmp_path / "six_storey.yaml").write_text(BUILDING)
     message = of_file(tmp_path / "six_story.yaml")
     assert "six_story.yaml: there is no such file" in message
@@ -48,20 +45,20 @@ def test_missing_file_names_the_nearest(tmp_path: Path) -> None:
     assert "does not exist either" in of_file(tmp_path / "nowhere" / "a.yaml")
 
 
-def test_a_folder_is_no_file(tmp_path: Path) -> None:
+def test_a_folder_is_no_file(tmp_path):
     (tmp_path / "one.yaml").write_text(BUILDING)
     message = of_file(tmp_path)
     assert "is a folder" in message
     assert str(tmp_path / "one.yaml") in message
 
 
-def test_a_file_as_folder_is_refused(tmp_path: Path) -> None:
+def test_a_file_as_folder_is_refused(tmp_path):
     (tmp_path / "one.yaml").write_text(BUILDING)
     assert "cannot be read" in of_file(tmp_path / "one.yaml" / "two.yaml")
     assert "do not show; rename the file" in of_file("with\0zero.yaml")
 
 
-def test_other_encodings_are_refused_with_the_place(tmp_path: Path) -> None:
+def test_other_encodings_are_refused_with_the_place(tmp_path):
     path = tmp_path / "latin.yaml"
     path.write_bytes("rps: 1\ntitle: Geb\xe4ude\n".encode("latin-1"))
     message = of_file(path)
@@ -71,7 +68,7 @@ def test_other_encodings_are_refused_with_the_place(tmp_path: Path) -> None:
     assert "is not UTF-8" in of_file(path)
 
 
-def test_standard_input(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_standard_input(monkeypatch):
     monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(BUILDING.encode())))
     case = load_case("-", ["title=From a pipe"])
     assert (case.name, case.title, case.folder) == ("stdin", "From a pipe", Path())
@@ -81,7 +78,7 @@ def test_standard_input(monkeypatch: pytest.MonkeyPatch) -> None:
     assert of_file("-").startswith("<stdin>: the standard input is closed; name a file")
 
 
-def test_a_name_too_long_is_refused() -> None:
+def test_a_name_too_long_is_refused():
     assert "cannot be read: File name too long; check" in of_file("x" * 5000)
     assert len(of_file("x" * 5000)) < 400
     for read in (load_record, lambda source: expand_sources([source])):
@@ -93,12 +90,10 @@ def test_a_name_too_long_is_refused() -> None:
             read("a\0b.at2")
 
 
-def test_any_refusal_of_the_system_is_an_error_in_plain_words(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_any_refusal_of_the_system_is_an_error_in_plain_words(monkeypatch, tmp_path):
     """Permissions do not stop root, under whom tests may run."""
 
-    def denied(*_: object, **__: object) -> None:
+    def denied(*_, **__):
         raise PermissionError(13, "Permission denied", "a")
 
     monkeypatch.setattr(Path, "stat", denied)
@@ -109,13 +104,11 @@ def test_any_refusal_of_the_system_is_an_error_in_plain_words(
 
 
 @pytest.mark.parametrize("device", ["/dev/zero", "/dev/null", "/dev/urandom"])
-def test_devices_are_refused(device: str) -> None:
+def test_devices_are_refused(device):
     assert "is a device; name a file" in of_file(device)
 
 
-def test_a_pipe_is_read_if_somebody_writes(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_pipe_is_read_if_somebody_writes(tmp_path, monkeypatch):
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
     monkeypatch.setattr(files, "_PATIENCE", 0.05)
@@ -127,13 +120,13 @@ def test_a_pipe_is_read_if_somebody_writes(
     writer.join()
 
 
-def test_sizes_are_refused_before_they_are_read(tmp_path: Path) -> None:
+def test_sizes_are_refused_before_they_are_read(tmp_path):
     path = tmp_path / "large.yaml"
     path.write_bytes(b"rps: 1\ntitle: " + b"x" * files.LARGEST)
     assert "more than 2 MB is not a case or a study" in of_file(path)
 
 
-def test_of_many_faults_the_first_hundred_are_told() -> None:
+def test_of_many_faults_the_first_hundred_are_told():
     lines = refusal(
         "title: t\n" + "".join(f"key_{n}: 1\n" for n in range(3000))
     ).splitlines()
@@ -142,17 +135,17 @@ def test_of_many_faults_the_first_hundred_are_told() -> None:
     assert lines[-1].endswith("more faults; correct these first")
 
 
-def test_long_keys_are_cut() -> None:
+def test_long_keys_are_cut():
     assert max(map(len, refusal("title: t\n" + "k" * 5000 + ": 1\n").splitlines())) < 300
 
 
-def test_nothing_is_told_of_a_file_that_is_no_case() -> None:
+def test_nothing_is_told_of_a_file_that_is_no_case():
     message = refusal("key_of_somebody: 1\nsecret:\n")
     assert "rps is missing" in message
     assert not {"key_of_somebody", "secret"} & {*message.replace(":", " ").split()}
 
 
-def test_a_decimal_comma_in_braces_is_named() -> None:
+def test_a_decimal_comma_in_braces_is_named():
     text = "rps: 1\nsuperstructure: {storeys: 3, period: 0,3, storey_height: 3}\n"
     lines = refusal(text).splitlines()
     named = [line for line in lines if "period" in line]
@@ -163,7 +156,7 @@ def test_a_decimal_comma_in_braces_is_named() -> None:
     assert "the key 3 must be text" in refusal("a: {b: 0, 3}\n")
 
 
-TABLES: dict[str, Callable[[Path], object]] = {
+TABLES = {
     "period [s],acceleration [g]": lambda file: load_target(str(file)),
     "PGV [cm/s],rate [1/year]": lambda file: read_hazard(file, "PGV"),
     "time [s],rotation [rad]": lambda file: measured(str(file), "rocking", None, None),
@@ -175,7 +168,7 @@ TABLES: dict[str, Callable[[Path], object]] = {
 
 
 @pytest.mark.parametrize("head", TABLES)
-def test_a_lost_quote_in_a_table_is_told(tmp_path: Path, head: str) -> None:
+def test_a_lost_quote_in_a_table_is_told(tmp_path, head):
     file = tmp_path / "x.csv"
     file.write_text(f'{head}\r1,1\r"{"1" * 140_000}', encoding="utf-8", newline="")
     with pytest.raises(RpsError, match=r"x\.csv:[23]: is not CSV: field larger"):

@@ -1,7 +1,5 @@
 """Limits in their three forms, for every result that may be limited, and those of `--fail-on`."""
 
-from __future__ import annotations
-
 import pytest
 
 from rpscli.analyses.result_quantities import LIMITED
@@ -21,15 +19,13 @@ WITH_COLUMNS = BUILDING.replace(
 """What the force of a column is made of, and the column, and strengths."""
 
 
-def limited(text: str) -> tuple[Condition, ...]:
+def limited(text):
     """Conditions of a case with these limits."""
     changed = WITH_COLUMNS.replace("limits: {rotation_ratio: 0.5}", f"limits: {text}")
     return conditions_of(case_of(text=changed).limits, "the case")
 
 
-def condition(
-    of: str, at: float, share: float = 0.0, fractile: float | None = None
-) -> Condition:
+def condition(of, at, share=0.0, fractile=None):
     return Condition(of, at, "the case", share, fractile)
 
 
@@ -56,9 +52,7 @@ def condition(
          condition("full_contact_share", 0.5, 0.1), "at least 0.5 except in 10 % of the records"),
     ],
 )  # fmt: skip
-def test_a_limit_may_have_a_share_or_a_fractile(
-    text: str, expected: Condition, words: str
-) -> None:
+def test_a_limit_may_have_a_share_or_a_fractile(text, expected, words):
     (found,) = limited(text)
     assert found == expected
     assert requirement_text(found) == words
@@ -66,12 +60,12 @@ def test_a_limit_may_have_a_share_or_a_fractile(
 
 
 @pytest.mark.parametrize("name", [quantity.name for quantity in LIMITED])
-def test_every_result_of_the_list_may_be_limited(name: str) -> None:
+def test_every_result_of_the_list_may_be_limited(name):
     ((found),) = limited(f"{{{name}: 3}}")
     assert (found.name, found.limit) == (name, 3.0)
 
 
-def test_conditions_of_options() -> None:
+def test_conditions_of_options():
     assert parse_condition("max_base_shear=2 kN").limit == 2000.0
     with pytest.raises(UsageError, match="or '0"):
         parse_condition("max_base_shear=2 m")

@@ -1,7 +1,5 @@
 """What is possible but hardly meant: warnings with numbers by hand."""
 
-from __future__ import annotations
-
 import pytest
 
 from rpscli.case.plausibility import Doubt, doubts_of_many
@@ -24,7 +22,7 @@ podium:
 """
 
 
-def doubts(old: str = "", new: str = "") -> list[str]:
+def doubts(old="", new=""):
     assert old in CASE
     return list(case_of(text=CASE.replace(old, new)).warnings)
 
@@ -66,7 +64,7 @@ SLIPS = [
 
 
 @pytest.mark.parametrize(("old", "new", "told"), SLIPS)
-def test_slips_are_told_with_their_number(old: str, new: str, told: list[str]) -> None:
+def test_slips_are_told_with_their_number(old, new, told):
     assert doubts() == []
     found = doubts(old, new)
     assert len(found) == len(told), found
@@ -74,7 +72,7 @@ def test_slips_are_told_with_their_number(old: str, new: str, told: list[str]) -
         assert any(part in text for text in found), found
 
 
-def test_the_first_period_is_looked_at() -> None:
+def test_the_first_period_is_looked_at():
     """One storey of 200 t on 900 N/m: T1 = 2 pi sqrt(200000/900) = 93.66 s."""
     text = CASE.replace("storeys: 3", "storeys: 1").replace(
         "[200 t, 200 t, 240 t]", "200 t"
@@ -86,7 +84,7 @@ def test_the_first_period_is_looked_at() -> None:
     assert "T1 = 93.66 s is unusual: 0.02 to 5 s is" in doubt
 
 
-def test_doubts_of_many_systems() -> None:
+def test_doubts_of_many_systems():
     wide = Doubt("the width {0} is unusual", 9.0)
     assert doubts_of_many(
         [[wide], [], [wide._replace(value=7.5)], [Doubt("it is odd{1}", None, "!")]]

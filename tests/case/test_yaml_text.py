@@ -1,10 +1,7 @@
 """The strict text layer: positions, scalars of YAML 1.2, a place and a remedy for what is wrong."""
 
-from __future__ import annotations
-
 import math
 import re
-from typing import Any
 
 import pytest
 from hypothesis import given, settings
@@ -17,7 +14,7 @@ from rpscli.errors import CaseError
 from .conftest import refusal
 
 
-def test_positions_of_keys_and_values() -> None:
+def test_positions_of_keys_and_values():
     document = read_yaml(
         "a:\n  b: 1\n  c: [x, {d: 2}]\ne: &one {x: 1}\nf: *one\n", "c.yaml"
     )
@@ -32,7 +29,7 @@ def test_positions_of_keys_and_values() -> None:
     assert str(document.value_place(("f", "x"))) == "c.yaml:4:13"
 
 
-def test_a_part_keeps_its_positions_and_faults() -> None:
+def test_a_part_keeps_its_positions_and_faults():
     part = read_yaml("base:\n  rps: 1\n  rps: 2\nother: 2\n", "s.yaml").part("base")
     assert part.content == {"rps": 1}  # the first of two equal keys
     assert str(part.value_place(("rps",))) == "s.yaml:2:8"
@@ -74,7 +71,7 @@ BOMB = [f"l{i}: &l{i} [{', '.join([f'*l{i - 1}'] * 9)}]" for i in range(1, 9)]
         ("l0: &l0 [1]\n" + "\n".join(BOMB), ["more than 20000 values; do aliases"]),
     ],
 )
-def test_syntax_is_refused_with_place_and_remedy(text: str, parts: list[str]) -> None:
+def test_syntax_is_refused_with_place_and_remedy(text, parts):
     message = refusal(text)
     assert "\n" not in message
     for part in parts:
@@ -98,9 +95,7 @@ def test_syntax_is_refused_with_place_and_remedy(text: str, parts: list[str]) ->
         ("a: [200,5 t, 3 t]\n", "1:4", ["write 200.5 t, or for two numbers a blank"]),
     ],
 )
-def test_what_reading_survives_is_told_as_well(
-    text: str, place: str, parts: list[str]
-) -> None:
+def test_what_reading_survives_is_told_as_well(text, place, parts):
     lines = refusal(text).splitlines()
     assert any(
         line.startswith(f"c.yaml:{place}: ") and parts[0] in line for line in lines
@@ -109,7 +104,7 @@ def test_what_reading_survives_is_told_as_well(
     assert any("podium is missing" in line for line in lines)
 
 
-def test_lists_without_a_decimal_comma_are_read() -> None:
+def test_lists_without_a_decimal_comma_are_read():
     read = read_yaml(
         "a: [1,2]\nb: [1,2,3, 4]\nc: [1.5,2, 0.5]\nd: [a,1, b]\n", "c.yaml"
     ).content
@@ -118,7 +113,7 @@ def test_lists_without_a_decimal_comma_are_read() -> None:
 
 @given(st.text(alphabet=" \n\t-:[]{},&*!|>'\"%@`#?abc01.", max_size=40))
 @settings(max_examples=300)
-def test_any_text_is_read_or_refused_with_the_name(text: str) -> None:
+def test_any_text_is_read_or_refused_with_the_name(text):
     message = ""
     try:
         assert isinstance(read_yaml(text, "c.yaml").content, dict)
@@ -127,18 +122,18 @@ def test_any_text_is_read_or_refused_with_the_name(text: str) -> None:
     assert re.match(r"c\.yaml(:\d+:\d+)?: .|$", message)
 
 
-def test_a_single_value_is_read_alike() -> None:
+def test_a_single_value_is_read_alike():
     assert read_value("[1, 1e-6, no]", "--set x") == [1, 1e-6, "no"]
     with pytest.raises(CaseError, match="--set x: a is written twice"):
         read_value("{a: 1, a: 2}", "--set x")
 
 
-def plain(text: str) -> Any:
+def plain(text):
     """What an unquoted scalar is read as."""
     return read_yaml(f"key: {text}", "c.yaml").content["key"]
 
 
-SCALARS: dict[str, object] = {
+SCALARS = {
     "1e-6": 1e-6, "1.0e-6": 1e-6, ".5": 0.5, "3.": 3.0, "+2": 2, "012": 12, "0o17": 15, "0x1F": 31,
     "-.inf": -math.inf, "1_000": "1_000", "12:30:45": "12:30:45", "2024-01-31": "2024-01-31",
     "0b11": "0b11", "no": "no", "on": "on", "Yes": "Yes", "y": "y", ".": ".", "1e": "1e",
@@ -148,29 +143,29 @@ SCALARS: dict[str, object] = {
 
 
 @pytest.mark.parametrize(("text", "value"), SCALARS.items())
-def test_core_schema(text: str, value: object) -> None:
+def test_core_schema(text, value):
     found = plain(text)
     assert found == value
     assert type(found) is type(value)
 
 
-def test_not_a_number_is_a_number_to_yaml() -> None:
+def test_not_a_number_is_a_number_to_yaml():
     assert math.isnan(plain(".NaN"))
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
-def test_real_numbers_come_back_exactly(number: float) -> None:
+def test_real_numbers_come_back_exactly(number):
     assert plain(repr(number)) == number
 
 
 @given(st.text(alphabet=st.characters(exclude_categories=["C", "Z"]), max_size=20))
-def test_quoted_text_stays_text(text: str) -> None:
+def test_quoted_text_stays_text(text):
     quoted = text.replace("'", "''")
     assert read_yaml(f"key: '{quoted}'", "c.yaml").content == {"key": text}
 
 
 @given(st.from_regex(r"[a-zA-Z][a-zA-Z0-9_]{0,12}", fullmatch=True))
-def test_words_are_text_but_for_three(word: str) -> None:
+def test_words_are_text_but_for_three(word):
     special = {"true": True, "false": False, "null": None}
     is_special = word in {word.lower(), word.upper(), word.capitalize()}
     assert plain(word) == (special.get(word.lower(), word) if is_special else word)

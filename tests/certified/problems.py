@@ -9,12 +9,9 @@ Lengths come from the complex contact geometry of `storey_lagrangian`. Differenc
 are formed as products, so that they keep their digits where a swing turns.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import pairwise
@@ -22,12 +19,11 @@ from typing import NamedTuple
 
 import numpy as np
 from oracles.compliant_storey import CompliantStorey
-from oracles.crossings import Array
-from oracles.devices import Friction, OracleDevice, RollingResistance, Stop, Tendon
+from oracles.devices import Friction, RollingResistance, Stop, Tendon
 from oracles.full_contact import FullContact
 from oracles.second_integrator import simulate
 from oracles.spatial_integrator import SpatialSimulation, simulate_pair
-from oracles.storey_lagrangian import Contact, OracleSystem, StoreyLagrangian
+from oracles.storey_lagrangian import Contact, StoreyLagrangian
 from paper_structures import known, oracle_devices, oracle_system
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
@@ -36,22 +32,20 @@ from two_components import released
 
 from rpscli.analyses.timehistory import time_history
 from rpscli.analyses.verification import FOLDER, answers, certified
-from rpscli.case.case import Case, load_case
-from rpscli.model.podium import PodiumStructure
-from rpscli.records.ground_motion import MotionComponents
+from rpscli.case.case import load_case
 from rpscli.records.loading import load_components
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(60)
 
 
-def integral(of: Callable[[float], float], start: float, end: float) -> float:
+def integral(of, start, end):
     """By sixty points of Gauss: exact to rounding for what is analytic nearby."""
     half = 0.5 * (end - start)
     values = [of(start + half * (1.0 + z)) for z in NODES]
     return half * float(WEIGHTS @ np.array(values))
 
 
-def tilt_at(of: Callable[[float], float], value: float, high: float) -> float:
+def tilt_at(of, value, high):
     """Where a function that grows from 0 on takes a value."""
     return float(brentq(lambda x: of(x) - value, 0.0, high, xtol=1e-16, rtol=1e-15))
 
@@ -66,13 +60,11 @@ class Hit(NamedTuple):
 class RigidFrame:
     """A rigid frame or block that swings freely, with devices or without; |theta| below its end."""
 
-    def __init__(
-        self, system: OracleSystem, devices: tuple[OracleDevice, ...] = ()
-    ) -> None:
+    def __init__(self, system, devices=()):
         self.motion, self.devices = StoreyLagrangian(system), devices
         self.weight = self.motion.lifted_mass * system.gravity
 
-    def moved(self, high: float, low: float) -> complex:
+    def moved(self, high, low):
         """w(high) - w(low) of the cap beam."""
         motion, border = self.motion, self.motion.beta
         if low < border < high:
@@ -84,7 +76,7 @@ class RigidFrame:
             return 2.0 * motion.radius * (high - low) + 2.0 * motion.arc_frame * turned
         return 2.0 * motion.arc_end * turned
 
-    def fallen(self, high: float, low: float, way: int) -> float:
+    def fallen(self, high, low, way):
         """Kinetic energy from a turn at `high` to `low` (way -1), or lost from `low` to it (+1)."""
         moved, far = self.moved(high, low), self.moved(high, 0.0).real
         energy = self.weight * moved.imag
@@ -108,13 +100,13 @@ class RigidFrame:
                 energy += device.columns * longer * mean
         return energy
 
-    def inertia(self, x: float) -> float:
+    def inertia(self, x):
         """Of theta'^2/2."""
         rolling = x <= self.motion.beta and self.motion.beta > 0.0
         slope = self.motion.cap_beam(x, rolling=rolling)[1]
         return self.motion.spin_inertia + self.motion.moving_mass * abs(slope) ** 2
 
-    def breaks(self, high: float) -> list[float]:
+    def breaks(self, high):
         """Tilts at which a law changes, from 0 to the turn."""
         found = [0.0, self.motion.beta]
         gaps = [device.gap for device in self.devices if isinstance(device, Stop)]
@@ -124,11 +116,11 @@ class RigidFrame:
         ]
         return [*sorted(x for x in set(found) if x < high), high]
 
-    def duration(self, high: float, low: float, way: int) -> float:
+    def duration(self, high, low, way):
         """Between the turn at `high` and `low`."""
         places = [low, *(x for x in self.breaks(high) if x > low)]
 
-        def slowness(x: float) -> float:
+        def slowness(x):
             return math.sqrt(0.5 * self.inertia(x) / self.fallen(high, x, way))
 
         total = sum(integral(slowness, a, b) for a, b in pairwise(places[:-1]))
@@ -138,9 +130,9 @@ class RigidFrame:
             lambda s: 2.0 * span * s * slowness(high - span * s * s), 0.0, 1.0
         )
 
-    def impacts(self, release: float, count: int) -> list[Hit]:
+    def impacts(self, release, count):
         """Of a release at rest, with theta'+ = e theta'-."""
-        found: list[Hit] = []
+        found = []
         high, time = release, self.duration(release, 0.0, -1)
         for _ in range(count):
             energy = self.fallen(high, 0.0, -1)
@@ -150,7 +142,7 @@ class RigidFrame:
             time += self.duration(high, 0.0, 1) + self.duration(high, 0.0, -1)
         return found
 
-    def tilt_after(self, release: float, time: float) -> float:
+    def tilt_after(self, release, time):
         """Of spherical ends, which pass upright without loss: theta at a time."""
         quarter = self.duration(release, 0.0, -1)
         rest, side = time % (4.0 * quarter), 1.0
@@ -181,12 +173,12 @@ class Statics(NamedTuple):
     energy: float
 
 
-def statics(system: OracleSystem, rotation: float) -> Statics:
+def statics(system, rotation):
     """Force at uplift and at a rotation, and where the weight restores no longer."""
     motion = StoreyLagrangian(system)
     weight = motion.lifted_mass * system.gravity
 
-    def at(x: float) -> tuple[complex, complex, complex]:
+    def at(x):
         return motion.cap_beam(x, rolling=x <= motion.beta and motion.beta > 0.0)
 
     critical = brentq(lambda x: at(x)[1].imag, 1e-3, 0.6, xtol=1e-16, rtol=1e-15)
@@ -197,7 +189,7 @@ def statics(system: OracleSystem, rotation: float) -> Statics:
     )  # fmt: skip
 
 
-def uplifted_roots(system: OracleSystem) -> Array:
+def uplifted_roots(system):
     """Eigenvalues of small motions on one side from tilt 0, in tilt and drifts."""
     motion, n = StoreyLagrangian(system), len(system.masses)
     _, slope, bend = motion.cap_beam(0.0, rolling=motion.beta > 0.0)
@@ -213,7 +205,7 @@ def uplifted_roots(system: OracleSystem) -> Array:
     return np.asarray(np.linalg.eigvals(flow))
 
 
-def uplift_time(system: OracleSystem, a_g: Array, dt: float) -> float:
+def uplift_time(system, a_g, dt):
     """First uplift under a polygon, by matrix exponentials."""
     motion, n = StoreyLagrangian(system), len(system.masses)
     contact = FullContact(motion)
@@ -221,7 +213,7 @@ def uplift_time(system: OracleSystem, a_g: Array, dt: float) -> float:
     hold = motion.lifted_mass * system.gravity * system.tan_alpha
     state = np.zeros(2 * n + 2)
 
-    def spare(tau: float, begun: Array) -> float:
+    def spare(tau, begun):
         return abs(float(push @ expm(flow * tau) @ begun)) - hold
 
     steps = 50
@@ -238,14 +230,14 @@ def uplift_time(system: OracleSystem, a_g: Array, dt: float) -> float:
     raise RuntimeError("it does not lift")
 
 
-def least_tilt(system: OracleSystem, axial: float, tilt: float, turning: float) -> float:
+def least_tilt(system, axial, tilt, turning):
     """Where free motion of a rigid frame on flat ends, begun so, comes nearest to upright.
 
     `axial` is the inertia of all columns about their axes [kg m2].
     """
     motion = StoreyLagrangian(system)
 
-    def round_inertia(x: float) -> float:
+    def round_inertia(x):
         around = motion.moving_mass * motion.cap_beam(x, rolling=False)[0].real ** 2
         turned = motion.spin_inertia * math.sin(x) ** 2
         return float(around + turned + axial * (1.0 - math.cos(x)) ** 2)
@@ -253,7 +245,7 @@ def least_tilt(system: OracleSystem, axial: float, tilt: float, turning: float) 
     momentum = round_inertia(tilt) * turning
     frame = RigidFrame(system)
 
-    def excess(x: float) -> float:
+    def excess(x):
         """Of the energy of the turning over what the fall from the beginning gives."""
         spin = 1.0 / round_inertia(x) - 1.0 / round_inertia(tilt)
         return 0.5 * momentum**2 * spin - frame.fallen(tilt, x, -1)
@@ -261,10 +253,7 @@ def least_tilt(system: OracleSystem, axial: float, tilt: float, turning: float) 
     return float(brentq(excess, 1e-3, 0.7 * tilt, xtol=1e-16, rtol=1e-15))
 
 
-Change = Callable[[PodiumStructure], PodiumStructure]
-
-
-def unchanged(structure: PodiumStructure) -> PodiumStructure:
+def unchanged(structure):
     """The structure itself."""
     return structure
 
@@ -283,31 +272,31 @@ class Problem:
     name: str
 
     @cached_property
-    def asked(self) -> dict[str, tuple[str, int, list[float]]]:
+    def asked(self):
         """By its quantities: unit, digits that are certified, and the certified values."""
         return {q: told for (name, q), told in certified().items() if name == self.name}
 
     @property
-    def times(self) -> list[float]:
+    def times(self):
         """At which something is asked [s]."""
         found = (re.search(r" at ([\d.]+) s$", quantity) for quantity in self.asked)
         return [*dict.fromkeys(float(time[1]) for time in found if time)]
 
     @cached_property
-    def case(self) -> Case:
+    def case(self):
         return load_case(FOLDER / f"{self.name}.yaml")
 
     @property
-    def structure(self) -> PodiumStructure:
+    def structure(self):
         return self.case.structure
 
     @property
-    def start(self) -> float:
+    def start(self):
         """Tilt from which it is let go [rad]."""
         return self.case.analysis.initial_rotation
 
     @cached_property
-    def motion(self) -> MotionComponents:
+    def motion(self):
         record = known(self.case.record)
         moved = load_components(
             record.source, record.vertical, record.y, folder=self.case.folder
@@ -315,15 +304,15 @@ class Problem:
         return moved.scaled(record.scale)
 
     @property
-    def ground(self) -> Array:
+    def ground(self):
         return self.motion.horizontal.acceleration
 
     @property
-    def dt(self) -> float:
+    def dt(self):
         return self.motion.horizontal.dt
 
     @cached_property
-    def system(self) -> OracleSystem:
+    def system(self):
         """With the restitution that the part `loss` of what impulses at the edges take leaves."""
         system = oracle_system(self.structure)
         e = StoreyLagrangian(system).restitution
@@ -332,17 +321,17 @@ class Problem:
         )
 
     @property
-    def devices(self) -> tuple[OracleDevice, ...]:
+    def devices(self):
         return oracle_devices(self.structure)
 
-    def rows(self, dt: float) -> list[int]:
+    def rows(self, dt):
         """Samples at the times that are asked for."""
         return [round(t / dt) for t in self.times]
 
-    def first(self) -> list[float]:
+    def first(self):
         return [float(z) for z in FIRST[self.name](self)]
 
-    def second(self, change: Change) -> list[float]:
+    def second(self, change):
         structure, analysis = change(self.structure), self.case.analysis
         if self.name == "free_wobble":
             return [*second_wobble(self, structure)]
@@ -358,31 +347,31 @@ class Problem:
         return [value for (value,) in found.values()]
 
 
-def release(problem: Problem) -> Iterator[float]:
+def release(problem):
     """A rigid frame or block that is let go: when impacts come, and how fast."""
     frame = RigidFrame(problem.system, problem.devices)
     for hit in frame.impacts(problem.start, len(problem.asked) // 2):
         yield from hit
 
 
-def spherical(problem: Problem) -> Iterable[float]:
+def spherical(problem):
     frame = RigidFrame(problem.system)
     return (frame.tilt_after(problem.start, t) for t in problem.times)
 
 
-def overturning(problem: Problem) -> Iterable[float]:
+def overturning(problem):
     """What is left at the end of the pulse, to come to the balance point."""
     system, right = problem.system, Contact(1, rolling=False)
     motion, g, slope = StoreyLagrangian(system), system.gravity, system.tan_alpha
     shape = problem.ground / problem.ground.max()
     knots = np.arange(len(shape)) * problem.dt
 
-    def rates(t: float, y: Array, peak: float) -> Array:
+    def rates(t, y, peak):
         # a ground that moves to the right pushes the block to the left: mirrored
         a_g = -peak * float(np.interp(t, knots, shape))
         return np.array([y[1], motion.acceleration(right, y, a_g, g)[0]])
 
-    def left(peak: float) -> float:
+    def left(peak):
         start, y = 2.0 * problem.dt * g * slope / peak, np.zeros(2)
         places = [start, *(float(t) for t in knots if t > start)]
         for a, b in pairwise(places):
@@ -395,7 +384,7 @@ def overturning(problem: Problem) -> Iterable[float]:
     return [brentq(left, 5.0, 12.0, xtol=1e-15, rtol=1e-15)]
 
 
-def modes(problem: Problem) -> Iterator[float]:
+def modes(problem):
     roots = uplifted_roots(problem.system)
     own = [z.real for z in roots if abs(z.imag) < 1e-9]
     yield math.sqrt(abs(own[0] * own[1]))
@@ -403,7 +392,7 @@ def modes(problem: Problem) -> Iterator[float]:
         yield from (abs(z), -z.real / abs(z))
 
 
-def building(problem: Problem) -> Iterator[float]:
+def building(problem):
     """Tilts and drifts at some times, and the first uplift if nothing but the building holds it."""
     up = problem.motion.vertical
     found = simulate(
@@ -417,7 +406,7 @@ def building(problem: Problem) -> Iterator[float]:
     yield found.max_rotation
 
 
-def giving_way(problem: Problem) -> Iterable[float]:
+def giving_way(problem):
     system, contact = problem.system, problem.structure.contact
     motion = StoreyLagrangian(system)
     lifts = known(contact.settlement) / motion.half_width
@@ -427,7 +416,7 @@ def giving_way(problem: Problem) -> Iterable[float]:
     return (z for j in problem.rows(problem.dt) for z in (tilt[j], floors[j, -1]))
 
 
-def wobble(problem: Problem) -> Iterator[float]:
+def wobble(problem):
     """Free motion in space; its least tilt by energy and angular momentum."""
     run = SpatialSimulation(problem.system, rtol=1e-13)
     run.release((problem.start, 0.0), (0.0, problem.start * TURNING))
@@ -438,7 +427,7 @@ def wobble(problem: Problem) -> Iterator[float]:
         yield from states[j, :2]
 
 
-def second_wobble(problem: Problem, structure: PodiumStructure) -> Iterator[float]:
+def second_wobble(problem, structure):
     """No case says the turning at the start."""
     across, accuracy = problem.start * TURNING, problem.case.analysis.accuracy
     found = released(
@@ -449,7 +438,7 @@ def second_wobble(problem: Problem, structure: PodiumStructure) -> Iterator[floa
         yield from (float(found.tilt[j].real), float(found.tilt[j].imag))
 
 
-def both_components(problem: Problem) -> Iterable[float]:
+def both_components(problem):
     run = SpatialSimulation(problem.system, rtol=1e-13, recontact=1e-12)
     run.release((problem.start, 0.0), (0.0, 0.0))
     motion = problem.motion
@@ -459,7 +448,7 @@ def both_components(problem: Problem) -> Iterable[float]:
     return (z for j in problem.rows(problem.dt) for z in states[j, :2])
 
 
-def parting(problem: Problem) -> Iterator[float]:
+def parting(problem):
     """The last tilts of motions that part, at a tolerance that they outlive anyway."""
     for start in STARTS.tolist():
         found = simulate(
@@ -469,7 +458,7 @@ def parting(problem: Problem) -> Iterator[float]:
         yield float(found.theta[-1])
 
 
-FIRST: Mapping[str, Callable[[Problem], Iterable[float]]] = {
+FIRST = {
     "block_release": release,
     "block_overturning": overturning,
     "flat_release": release,

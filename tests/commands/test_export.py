@@ -1,13 +1,8 @@
 """`rps export`: other programs find what rps finds, within what their models leave out."""
 
-from __future__ import annotations
-
 import ast
 import importlib.util
 import json
-from collections.abc import Callable
-from pathlib import Path
-from typing import Any
 from xml.etree.ElementTree import fromstring
 
 import numpy as np
@@ -18,7 +13,7 @@ from scipy.integrate import solve_ivp
 from rpscli.case.case import load_case
 from rpscli.records.loading import load_record
 
-from .conftest import Invoke, columns, write_case
+from .conftest import columns, write_case
 
 pytestmark = needs_compiled_kernels
 
@@ -39,14 +34,14 @@ analysis: {free_vibration: 3}
 """
 
 
-def rerun(folder: Path) -> tuple[dict[str, Any], dict[str, Any]]:
+def rerun(folder):
     """Columns of both programs after the script has run."""
     python(str(folder / "rerun.py"))
     assert (folder / "rerun.png").stat().st_size > 10_000
     return columns(folder / "timehistory.csv"), columns(folder / "rerun.csv")
 
 
-def gap(of: str, ours: dict[str, Any], theirs: dict[str, Any]) -> float:
+def gap(of, ours, theirs):
     """Largest difference at the samples of rps, over the largest value."""
     mine = np.array(ours[of], dtype=float)
     at = np.array(ours["time [s]"], dtype=float)
@@ -62,7 +57,7 @@ UP = "record.vertical=pulse:half_sine?amplitude=0.4g&period=0.6&dt=0.01"
 @pytest.mark.evidence("export", "program")
 @pytest.mark.long
 @pytest.mark.parametrize("vertical", ["record.vertical=null", UP])
-def test_mujoco_finds_the_same(workplace: Path, rps: Invoke, vertical: str) -> None:
+def test_mujoco_finds_the_same(workplace, rps, vertical):
     pytest.importorskip("mujoco", reason="pip install rpscli[contact]")
     write_case("small.yaml", ("period=0.6", "period=0.6&dt=0.01"))
     short = ("--set", "analysis.free_vibration=0.3", "--set", vertical)
@@ -75,9 +70,7 @@ def test_mujoco_finds_the_same(workplace: Path, rps: Invoke, vertical: str) -> N
 
 @pytest.mark.evidence("export", "program")
 @pytest.mark.long
-def test_opensees_finds_the_same_where_impacts_take_nothing(
-    workplace: Path, rps: Invoke
-) -> None:
+def test_opensees_finds_the_same_where_impacts_take_nothing(workplace, rps):
     if importlib.util.find_spec("openseespy") is None:
         pytest.skip("pip install openseespy")
     (workplace / "slender.yaml").write_text(SLENDER, encoding="utf-8")
@@ -88,9 +81,7 @@ def test_opensees_finds_the_same_where_impacts_take_nothing(
     assert gap("cap_beam_displacement [m]", ours, theirs) < 1.5e-2
 
 
-def test_a_damper_takes_as_much_as_an_impact(
-    workplace: Path, rps_json: Callable[..., Any]
-) -> None:
+def test_a_damper_takes_as_much_as_an_impact(workplace, rps_json):
     """Of a rigid building: a swing is integrated here, and its energy is lost as (1 - e^2)."""
     law = "podium:\n  impact: {law: value, restitution: 0.99}"
     write_case("stiff.yaml", ("podium:", law))
@@ -107,14 +98,14 @@ def test_a_damper_takes_as_much_as_an_impact(
     history = columns(workplace / "o" / "timehistory.csv")["cap_beam_displacement [m]"]
     released = max(abs(float(displacement)) for displacement in history)
 
-    def rates(_: float, y: Any) -> list[float]:
+    def rates(_, y):
         return [y[1], -(np.interp(y[0], u, force) + found["LOSS"] * y[1]) / mass]
 
-    def turns(_: float, y: Any) -> float:
+    def turns(_, y):
         return float(y[1])
 
-    turns.direction = 1.0  # type: ignore[attr-defined]
-    turns.terminal = True  # type: ignore[attr-defined]
+    turns.direction = 1.0
+    turns.terminal = True
     swing = solve_ivp(
         rates, (0.0, 20.0), [released, -1e-9], events=turns, rtol=1e-8, max_step=0.01
     )
@@ -133,7 +124,7 @@ def test_a_damper_takes_as_much_as_an_impact(
     assert found["BEAM"] == pytest.approx(moving * moved, rel=1e-9)
 
 
-def test_what_a_model_lacks_is_refused(workplace: Path, rps: Invoke) -> None:
+def test_what_a_model_lacks_is_refused(workplace, rps):
     """With a remedy that works."""
     pulse = "pulse:sine?amplitude=0.1g&period=1&dt=0.01"
     two = ("--record", pulse, "--record", pulse.replace("period=1", "period=2"))
@@ -152,7 +143,7 @@ def test_what_a_model_lacks_is_refused(workplace: Path, rps: Invoke) -> None:
     assert not (workplace / "two").exists()
 
 
-def test_storeys_that_yield_are_springs_of_opensees(workplace: Path, rps: Invoke) -> None:
+def test_storeys_that_yield_are_springs_of_opensees(workplace, rps):
     """`Steel01` has their law: strength, stiffness, kinematic hardening."""
     yields = "--set", "superstructure.yield={shears: 900 kN, hardening: 0.02}"
     refused = rps("export", "small.yaml", "mujoco", *yields, exit_code=2)
@@ -168,7 +159,7 @@ def test_storeys_that_yield_are_springs_of_opensees(workplace: Path, rps: Invoke
         )
 
 
-def test_vertical_motion_is_beside_the_model(workplace: Path, rps: Invoke) -> None:
+def test_vertical_motion_is_beside_the_model(workplace, rps):
     write_case("small.yaml", ("period=0.6", "period=0.6&dt=0.01"))
     rps("export", "small.yaml", "mujoco", "-o", "m", "--set", UP)
     history = columns(workplace / "m" / "timehistory.csv")
@@ -192,14 +183,14 @@ def build(ground, dt, released): pass
 """In place of a model: it runs away."""
 
 
-def other_program(folder: Path, text: str) -> str:
+def other_program(folder, text):
     """A package of that name, as the script finds it."""
     (folder / "site" / "openseespy").mkdir(parents=True)
     (folder / "site" / "openseespy" / "opensees.py").write_text(text, encoding="utf-8")
     return str(folder / "site")
 
 
-def test_a_model_that_overturns_stops_and_says_so(workplace: Path, rps: Invoke) -> None:
+def test_a_model_that_overturns_stops_and_says_so(workplace, rps):
     rps("export", "small.yaml", "opensees", "-o", "o")
     (workplace / "o" / "model.py").write_text(OTHER, encoding="utf-8")
     places = {"PYTHONPATH": other_program(workplace, "")}
@@ -212,9 +203,7 @@ def test_a_model_that_overturns_stops_and_says_so(workplace: Path, rps: Invoke) 
     assert beyond < 4.0  # columns are 3 m long
 
 
-def test_what_the_other_program_lacks_is_one_sentence(
-    workplace: Path, rps: Invoke
-) -> None:
+def test_what_the_other_program_lacks_is_one_sentence(workplace, rps):
     rps("export", "small.yaml", "opensees", "-o", "o")
     site = other_program(
         workplace,
@@ -230,9 +219,7 @@ def test_what_the_other_program_lacks_is_one_sentence(
     )
 
 
-def test_how_long_programs_compare_is_said(
-    workplace: Path, rps_json: Callable[..., Any]
-) -> None:
+def test_how_long_programs_compare_is_said(workplace, rps_json):
     """A frame that rocks for long under a record that is none of a pulse."""
     (workplace / "slender.yaml").write_text(SLENDER, encoding="utf-8")
     calm = rps_json("export", "slender.yaml", "mujoco", "-o", "calm")
@@ -253,7 +240,7 @@ def test_how_long_programs_compare_is_said(
     )
 
 
-def test_a_title_stays_text(workplace: Path, rps: Invoke) -> None:
+def test_a_title_stays_text(workplace, rps):
     title = 'a --> <b> & """ \'\' \\ {c} \x07'
     write_case("small.yaml", ('"Three storeys [test]"', json.dumps(title)))
     for program in ("mujoco", "opensees"):

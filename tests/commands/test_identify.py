@@ -1,16 +1,11 @@
 """`rps identify`: from a file of measurements to values of the case."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Callable
-from pathlib import Path
-from typing import Any
 
 import pytest
 from paper_structures import needs_compiled_kernels
 
-from .conftest import Invoke, columns, write_case
+from .conftest import columns, write_case
 
 pytestmark = needs_compiled_kernels
 
@@ -34,14 +29,14 @@ SLOW = "time [min],rotation [mrad]\n" + "".join(
 """As from a wrong unit: swings of 42 s, and no energy is lost."""
 
 
-def history(folder: Path, quantity: str) -> list[tuple[str, str]]:
+def history(folder, quantity):
     """Times and values of a history."""
     table = columns(folder / "timehistory.csv")
     return list(zip(table["time [s]"], table[quantity], strict=True))
 
 
 @pytest.fixture
-def measured(workplace: Path, rps: Invoke) -> Path:
+def measured(workplace, rps):
     """A frame, and a release of one of another loss at impacts; mm and ms, as sensors have them."""
     (workplace / "frame.yaml").write_text(FRAME, encoding="utf-8")
     rps("timehistory", "frame.yaml", *RELEASED, "-o", "r")
@@ -54,9 +49,7 @@ def measured(workplace: Path, rps: Invoke) -> Path:
     return file
 
 
-def test_a_release_gives_a_loss(
-    measured: Path, rps_json: Callable[..., Any], rps: Invoke
-) -> None:
+def test_a_release_gives_a_loss(measured, rps_json, rps):
     found = rps_json("identify", "frame.yaml", "release.csv", "rocking")
     by_name = {each["name"]: each for each in found["estimates"]}
     # hundredths of a millimetre are rounded, of 180
@@ -72,9 +65,7 @@ def test_a_release_gives_a_loss(
     assert "--set podium.impact.loss=0.6" in shown
 
 
-def test_the_period_of_a_pull(
-    workplace: Path, rps: Invoke, rps_json: Callable[..., Any]
-) -> None:
+def test_the_period_of_a_pull(workplace, rps, rps_json):
     shake = ("--record", "pulse:sine?amplitude=0.02g&period=0.3&dt=0.005", "--figures", "none",
              "--set", "analysis.free_vibration=8")  # fmt: skip
     rps("timehistory", "small.yaml", *shake, "-o", "r")
@@ -88,9 +79,7 @@ def test_the_period_of_a_pull(
     assert by_name["damping"]["value"] == pytest.approx(0.05, rel=0.02)
 
 
-def test_a_longer_period_tells_how_ends_bear(
-    workplace: Path, rps_json: Callable[..., Any]
-) -> None:
+def test_a_longer_period_tells_how_ends_bear(workplace, rps_json):
     """Three storeys of the paper at r = 1.2: 63.4 MN/m and 47 um, from another derivation."""
     masses = ("[200000, 200000, 150000]", "20 t")
     write_case("paper.yaml", masses, ("curvature_ratio: 0.5", "curvature_ratio: 0"))
@@ -146,14 +135,7 @@ def test_a_longer_period_tells_how_ends_bear(
         ),
     ],
 )
-def test_refusals_say_what_to_do(
-    workplace: Path,
-    rps: Invoke,
-    words: tuple[str, ...],
-    text: str,
-    code: int,
-    reason: str,
-) -> None:
+def test_refusals_say_what_to_do(workplace, rps, words, text, code, reason):
     (workplace / "frame.yaml").write_text(FRAME, encoding="utf-8")
     if text.count("\n") == 1:
         text += "".join(f"{0.1 * i:.1f},{i % 3}\n" for i in range(40))

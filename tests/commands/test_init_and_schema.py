@@ -1,13 +1,9 @@
 """rps init, schema, explain and completion; cases and studies that are taken for each other."""
 
-from __future__ import annotations
-
 import json
 import os
 import sys
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import jsonschema
 import pytest
@@ -18,10 +14,8 @@ from rpscli.case.schema.keys import known_paths
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 
-from .conftest import Invoke, InvokeJson
 
-
-def test_starters_are_a_case_and_a_study(rps: Invoke) -> None:
+def test_starters_are_a_case_and_a_study(rps):
     rps("check", "-", input=rps("init", "-").stdout)
     assert not Path("case.yaml").exists()
     rps("init", says="case.yaml")
@@ -32,7 +26,7 @@ def test_starters_are_a_case_and_a_study(rps: Invoke) -> None:
     )  # 3 shapes x 5 motions x 2 scales
 
 
-def test_init_overwrites_nothing(rps: Invoke, rps_json: InvokeJson) -> None:
+def test_init_overwrites_nothing(rps, rps_json):
     Path("mine.yaml").write_text("mine", encoding="utf-8")
     rps("init", "mine.yaml", exit_code=7, says="--force")
     assert Path("mine.yaml").read_text(encoding="utf-8") == "mine"
@@ -40,7 +34,7 @@ def test_init_overwrites_nothing(rps: Invoke, rps_json: InvokeJson) -> None:
     assert Path("mine.yaml").read_text(encoding="utf-8").startswith("# A case of rps")
 
 
-def test_the_schema_is_json_and_nothing_else(rps: Invoke) -> None:
+def test_the_schema_is_json_and_nothing_else(rps):
     plain, marked = rps("schema"), rps("schema", "--json")
     assert plain.stdout == marked.stdout
     schema = json.loads(plain.stdout)
@@ -49,7 +43,7 @@ def test_the_schema_is_json_and_nothing_else(rps: Invoke) -> None:
 
 
 @pytest.mark.parametrize("kind", ["case", "study"])
-def test_an_editor_finds_the_schema(rps: Invoke, kind: str) -> None:
+def test_an_editor_finds_the_schema(rps, kind):
     study = ["--study"] if kind == "study" else []
     rps("init", "--editor", *study)
     first = Path(f"{kind}.yaml").read_text(encoding="utf-8").splitlines()[0]
@@ -63,7 +57,7 @@ def test_an_editor_finds_the_schema(rps: Invoke, kind: str) -> None:
     assert not Path("third.yaml").exists()
 
 
-def test_studies_keep_their_schema(rps: Invoke) -> None:
+def test_studies_keep_their_schema(rps):
     schema = json.loads(rps("schema", "study").stdout)
     jsonschema.Draft202012Validator.check_schema(schema)
     validator = jsonschema.Draft202012Validator(schema)
@@ -77,7 +71,7 @@ def test_studies_keep_their_schema(rps: Invoke) -> None:
     assert len(studied) > 5
     for content in studied:
         validator.validate(content)
-    wrong: list[dict[str, Any]] = [
+    wrong = [
         {"reports": ["overturnin"]},
         {"reports": [{"demand": {"colour": 1}}]},
         {"vari": []},
@@ -88,7 +82,7 @@ def test_studies_keep_their_schema(rps: Invoke) -> None:
             validator.validate({**studied[0], **change})
 
 
-def test_a_case_and_a_study_are_told_apart(rps: Invoke) -> None:
+def test_a_case_and_a_study_are_told_apart(rps):
     rps("init", "--study")
     for command in ("check", "timehistory", "modal"):
         result = rps(command, "study.yaml", exit_code=3)
@@ -121,13 +115,13 @@ def test_a_case_and_a_study_are_told_apart(rps: Invoke) -> None:
         ("law", ["flexible, rigid, value", "default", "section 4"]),
     ],
 )
-def test_what_a_word_means(rps: Invoke, word: str, said: list[str]) -> None:
+def test_what_a_word_means(rps, word, said):
     result = rps("explain", word)
     for text in said:
         assert text in " ".join(result.stdout.split()) or text in result.stdout
 
 
-def test_meanings_are_one_line(rps_json: InvokeJson) -> None:
+def test_meanings_are_one_line(rps_json):
     said = [
         *rps_json("explain", "of")["keys"],
         *rps_json("explain", "inertia_ratio_axial")["keys"],
@@ -135,7 +129,7 @@ def test_meanings_are_one_line(rps_json: InvokeJson) -> None:
     assert not any("\n" in item["meaning"] for item in said)
 
 
-def test_every_key_is_explained(rps_json: InvokeJson) -> None:
+def test_every_key_is_explained(rps_json):
     for path in known_paths(CaseFile)[::7]:
         key = ".".join(map(str, path))
         explained = rps_json("explain", key)["keys"]
@@ -144,7 +138,7 @@ def test_every_key_is_explained(rps_json: InvokeJson) -> None:
         assert all(explained[0]["keys"].values())
 
 
-def completed(rps: Invoke, *words: str) -> list[str]:
+def completed(rps, *words):
     """What zsh is told for the last of these words: type, value and help in turn."""
     environment = {
         "_RPS_COMPLETE": "zsh_complete",
@@ -170,19 +164,19 @@ def completed(rps: Invoke, *words: str) -> list[str]:
         ("explain wedge_sl", ["wedge_slenderness"]),
     ],
 )  # fmt: skip
-def test_words_are_completed(rps: Invoke, line: str, found: list[str]) -> None:
+def test_words_are_completed(rps, line, found):
     assert completed(rps, *line.split())[1::3] == found
     for files in ("check sm", "sweep sm", "timehistory a.yaml --record x"):
         assert completed(rps, *files.split())[0] == "file"
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
-def test_the_lines_of_a_shell(rps: Invoke, shell: str) -> None:
+def test_the_lines_of_a_shell(rps, shell):
     result = rps("completion", shell)
     assert f"_RPS_COMPLETE={shell}_complete" in result.stdout
 
 
-def test_bash_completes_by_them(shell: Callable[..., Any], tmp_path: Path) -> None:
+def test_bash_completes_by_them(shell, tmp_path):
     # The shell asks the program itself, which is no function then.
     rps = tmp_path / "rps"
     rps.write_text(
@@ -198,7 +192,7 @@ echo "${{COMPREPLY[@]}}"
     assert shell(lines).stdout.strip() == "podium.bearing.slenderness"
 
 
-def test_options_inside_reports_are_explained(rps: Invoke, rps_json: InvokeJson) -> None:
+def test_options_inside_reports_are_explained(rps, rps_json):
     (option,) = rps_json("explain", "modelling")["options"]
     assert option["key"] == "dispersion.modelling"
     assert "of the reports fragility, risk" in rps("explain", "dispersion").stdout
@@ -211,9 +205,7 @@ def test_options_inside_reports_are_explained(rps: Invoke, rps_json: InvokeJson)
     assert "likewise" in said_once
 
 
-def test_every_example_is_written_with_what_it_names(
-    rps: Invoke, rps_json: InvokeJson
-) -> None:
+def test_every_example_is_written_with_what_it_names(rps, rps_json):
     names = rps_json("init", "--example")["examples"]
     files = sorted((ROOT / "cases").rglob("*.yaml"))
     assert sorted(names) == sorted(
@@ -240,9 +232,7 @@ def test_every_example_is_written_with_what_it_names(
         ("measured_column", [], "check cases/measured_column.yaml"),
     ],
 )
-def test_an_example_goes_on_working(
-    rps: Invoke, name: str, others: list[str], then: str
-) -> None:
+def test_an_example_goes_on_working(rps, name, others, then):
     result = rps("init", "--example", name, says=f"next: rps {then}")
     assert all(Path("cases", each).is_file() for each in others)
     if then == "sweep":
@@ -251,7 +241,7 @@ def test_an_example_goes_on_working(
     rps(*words)
 
 
-def test_examples_share_files_and_overwrite_none(rps: Invoke) -> None:
+def test_examples_share_files_and_overwrite_none(rps):
     rps("init", "--example", "compdyn2021/figure_8")
     rps("init", "--example", "cases/compdyn2021/figure_3.yaml")
     Path("cases/compdyn2021/system.yaml").write_text("mine", encoding="utf-8")
@@ -260,7 +250,7 @@ def test_examples_share_files_and_overwrite_none(rps: Invoke) -> None:
     rps("init", "--example", "compdyn2021/figure_9", "--force")
 
 
-def test_a_folder_of_examples_is_written_whole(rps: Invoke) -> None:
+def test_a_folder_of_examples_is_written_whole(rps):
     rps("init", "--example", "compdyn2021", "paper")
     written = {path.name for path in Path("paper/compdyn2021").iterdir()}
     assert written == {path.name for path in (ROOT / "cases" / "compdyn2021").iterdir()}

@@ -1,10 +1,7 @@
 """Names and texts of others: none leaves its folder, and none reaches the terminal as a command."""
 
-from __future__ import annotations
-
 import csv
 import json
-from pathlib import Path
 
 import pytest
 
@@ -12,19 +9,17 @@ from rpscli.records.formats.at2 import at2_text
 from rpscli.records.loading import load_record
 from rpscli.report.page import page
 
-from .conftest import Invoke, write_case
+from .conftest import write_case
 
 PULSE = at2_text(load_record("pulse:half_sine?amplitude=0.3g&period=0.6&dt=0.05"))
 HISTORY = ("timehistory", "small.yaml", "--figures", "none")
 
 
-def _files(folder: Path) -> set[str]:
+def _files(folder):
     return {path.parent.name for path in folder.rglob("events.csv")}
 
 
-def test_names_of_dots_and_capitals_have_folders_of_their_own(
-    workplace: Path, rps: Invoke
-) -> None:
+def test_names_of_dots_and_capitals_have_folders_of_their_own(workplace, rps):
     records = ["...at2", "A.at2", "a.at2"]
     for folder, name in zip("xyz", records, strict=True):
         (workplace / folder).mkdir()
@@ -40,9 +35,7 @@ def test_names_of_dots_and_capitals_have_folders_of_their_own(
 
 
 @pytest.mark.parametrize("name", ["a\x1b[31mb.at2", "a\nb.at2", "a\u202eb.at2"])
-def test_names_that_a_terminal_obeys_are_refused(
-    workplace: Path, rps: Invoke, name: str
-) -> None:
+def test_names_that_a_terminal_obeys_are_refused(workplace, rps, name):
     (workplace / name).write_text(PULSE)
     for words in (
         ("record", "info", name),
@@ -53,7 +46,7 @@ def test_names_that_a_terminal_obeys_are_refused(
         assert name not in result.stderr
 
 
-def test_texts_of_files_cannot_change_the_terminal(workplace: Path, rps: Invoke) -> None:
+def test_texts_of_files_cannot_change_the_terminal(workplace, rps):
     lines = PULSE.split("\n")
     (workplace / "r.at2").write_text(
         "\n".join([lines[0], "\x1b[2Jclear \u202e", *lines[2:]])
@@ -71,9 +64,7 @@ def test_texts_of_files_cannot_change_the_terminal(workplace: Path, rps: Invoke)
 
 
 @pytest.mark.posix
-def test_names_that_are_not_utf_8_are_written_as_their_bytes(
-    workplace: Path, rps: Invoke
-) -> None:
+def test_names_that_are_not_utf_8_are_written_as_their_bytes(workplace, rps):
     name = "H\udce4"  # as Latin-1 writes an umlaut
     (workplace / f"{name}.at2").write_text(PULSE)
     records = (
@@ -90,7 +81,7 @@ def test_names_that_are_not_utf_8_are_written_as_their_bytes(
     assert rb"H\udce4" in page("title", "", [], name)
 
 
-def test_lists_and_folders_hold_names_with_marks(workplace: Path, rps: Invoke) -> None:
+def test_lists_and_folders_hold_names_with_marks(workplace, rps):
     (workplace / "h").mkdir()
     for name in ("a#b.at2", "a.at2", "n?b=c.at2", "x #y.at2"):
         (workplace / "h" / name).write_text(PULSE)
@@ -106,7 +97,7 @@ def test_lists_and_folders_hold_names_with_marks(workplace: Path, rps: Invoke) -
 @pytest.mark.parametrize(
     "files", ["5", "null", '["..", "../small.yaml"]', '"ab"', "[[1]]", "{}"]
 )
-def test_damaged_run_files_harm_nothing(workplace: Path, rps: Invoke, files: str) -> None:
+def test_damaged_run_files_harm_nothing(workplace, rps, files):
     rps(*HISTORY, "-o", "o")
     run = json.loads((workplace / "o/run.json").read_text())
     (workplace / "o/run.json").write_text(json.dumps({**run, "files": json.loads(files)}))

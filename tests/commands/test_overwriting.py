@@ -1,22 +1,18 @@
 """What a command replaces, and what it does not touch."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 
 import pytest
 
-from .conftest import SMALL_CASE, Invoke, Shell, write_case
+from .conftest import SMALL_CASE, write_case
 
 
-def contents(folder: str) -> dict[str, bytes]:
+def contents(folder):
     return {file.name: file.read_bytes() for file in Path(folder).iterdir()}
 
 
-def test_the_same_run_gives_the_same_bytes_and_an_edited_case_says_so(
-    rps: Invoke,
-) -> None:
+def test_the_same_run_gives_the_same_bytes_and_an_edited_case_says_so(rps):
     rps("modal", "small.yaml", "-o", "out")
     first = contents("out")
     result = rps("modal", "small.yaml", "-o", "out")
@@ -27,7 +23,7 @@ def test_the_same_run_gives_the_same_bytes_and_an_edited_case_says_so(
     rps("modal", "small.yaml", "-o", "out", says=told)
 
 
-def test_another_command_or_case_is_refused(rps: Invoke) -> None:
+def test_another_command_or_case_is_refused(rps):
     rps("modal", "small.yaml", "-o", "out")
     before = contents("out")
     write_case("other.yaml")
@@ -45,7 +41,7 @@ def test_another_command_or_case_is_refused(rps: Invoke) -> None:
     assert json.loads(Path("out/run.json").read_bytes())["command"] == "pushover"
 
 
-def test_strange_files_are_refused_unless_nothing_touches_them(rps: Invoke) -> None:
+def test_strange_files_are_refused_unless_nothing_touches_them(rps):
     Path("out").mkdir()
     Path("out/notes.txt").write_text("mine", encoding="utf-8")
     rps("modal", "small.yaml", "-o", "out")
@@ -54,7 +50,7 @@ def test_strange_files_are_refused_unless_nothing_touches_them(rps: Invoke) -> N
     assert Path("out/notes.txt").read_text(encoding="utf-8") == "mine"
 
 
-def test_a_case_from_a_pipe_is_known_by_its_text(rps: Invoke) -> None:
+def test_a_case_from_a_pipe_is_known_by_its_text(rps):
     for text, exit_code in (
         (SMALL_CASE, 0),
         (SMALL_CASE, 0),
@@ -63,7 +59,7 @@ def test_a_case_from_a_pipe_is_known_by_its_text(rps: Invoke) -> None:
         rps("modal", "-", "-o", "out", input=text, exit_code=exit_code)
 
 
-def test_a_place_that_is_no_folder(rps: Invoke) -> None:
+def test_a_place_that_is_no_folder(rps):
     Path("file").write_text("", encoding="utf-8")
     for place in ("file", "file/below"):
         result = rps("modal", "small.yaml", "-o", place, exit_code=1, says="is a file")
@@ -71,7 +67,7 @@ def test_a_place_that_is_no_folder(rps: Invoke) -> None:
 
 
 @pytest.mark.posix
-def test_two_processes_may_write_to_one_new_folder(shell: Shell) -> None:
+def test_two_processes_may_write_to_one_new_folder(shell):
     """Both compute; the second writes its results over those of the first, which are its own."""
     line = "rps modal small.yaml -o out --figures none"
     done = shell(f"{line} & first=$!; {line}; second=$?; wait $first && exit $second")

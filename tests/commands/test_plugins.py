@@ -1,7 +1,5 @@
 """What other packages add: the example is installed and used, broken ones break nothing else."""
 
-from __future__ import annotations
-
 import importlib
 import importlib.metadata
 import os
@@ -10,13 +8,12 @@ import shlex
 import shutil
 import sys
 import tomllib
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import click
 import numpy as np
 import pytest
+from PIL import Image
 from shown_commands import ROOT, command, of_blocks, run_in_shell
 
 import rpscli
@@ -31,7 +28,7 @@ from rpscli.records.target import CODES, load_target
 from rpscli.sweep.evaluation import System
 from rpscli.tools.selection.command import command as select
 
-from .conftest import Invoke, InvokeJson, write_case
+from .conftest import write_case
 
 EXAMPLE = Path(__file__).parents[1] / "example_package"
 BROKEN = """\
@@ -55,7 +52,7 @@ reports: [worst: {count: 3}]
 """
 
 
-def as_installed(folder: Path, name: str, entry_points: str) -> None:
+def as_installed(folder, name, entry_points):
     """What pip would leave of a package besides its modules."""
     place = folder / f"{name.replace('-', '_')}-1.0.dist-info"
     place.mkdir(parents=True)
@@ -65,10 +62,10 @@ def as_installed(folder: Path, name: str, entry_points: str) -> None:
 
 
 @pytest.fixture
-def forgotten() -> Iterator[None]:
+def forgotten():
     """What is installed is looked for anew."""
 
-    def forget() -> None:
+    def forget():
         importlib.invalidate_caches()
         registry._points.cache_clear()
         registry._loaded.cache_clear()
@@ -80,7 +77,7 @@ def forgotten() -> Iterator[None]:
 
 
 @pytest.fixture
-def example(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, forgotten: None) -> None:
+def example(tmp_path, monkeypatch, forgotten):
     """The example, as its own `pyproject.toml` installs it."""
     project = tomllib.loads((EXAMPLE / "pyproject.toml").read_text(encoding="utf-8"))[
         "project"
@@ -95,13 +92,13 @@ def example(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, forgotten: None) ->
 
 
 @pytest.fixture
-def broken(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, forgotten: None) -> None:
+def broken(tmp_path, monkeypatch, forgotten):
     """A package of which nothing works."""
     as_installed(tmp_path / "broken", "broken-plugins", BROKEN)
     monkeypatch.syspath_prepend(tmp_path / "broken")
 
 
-def test_a_format(example: None, tmp_path: Path) -> None:
+def test_a_format(example, tmp_path):
     file = tmp_path / "one.tidy"
     file.write_text("TIDY dt=0.01 unit=cm/s2\n100\n-300\n50\n", encoding="utf-8")
     motion = rpscli.load_record(str(file))
@@ -114,7 +111,7 @@ def test_a_format(example: None, tmp_path: Path) -> None:
         rpscli.load_record(str(file))
 
 
-def test_a_measure(example: None) -> None:
+def test_a_measure(example):
     motion = rpscli.load_record("pulse:sine?amplitude=0.3g&period=0.5")
     scaled = motion.scaled_to("ASI", 2.0)
     periods = np.linspace(0.1, 0.5, 41)
@@ -129,7 +126,7 @@ def test_a_measure(example: None) -> None:
         scale_to_of("ASII=1")
 
 
-def test_a_target(example: None) -> None:
+def test_a_target(example):
     target = load_target("plateau:?a=4 m/s2&corner=0.5")
     assert target.acceleration(np.array([0.1, 0.5, 1.0])).tolist() == [4.0, 4.0, 2.0]
     with pytest.raises(RecordError, match="a and corner must be > 0"):
@@ -139,7 +136,7 @@ def test_a_target(example: None) -> None:
     assert known == ["plateau:?"]
 
 
-def test_a_figure_of_a_history(example: None, rps: Invoke, workplace: Path) -> None:
+def test_a_figure_of_a_history(example, rps, workplace):
     rps("timehistory", "small.yaml", "-o", "here", "--figures", "png,phase_plane")
     assert (workplace / "here" / "phase_plane.png").read_bytes()
     result = rps("check", "small.yaml", "--draw", "--figures", "phase_plane", exit_code=2)
@@ -147,7 +144,7 @@ def test_a_figure_of_a_history(example: None, rps: Invoke, workplace: Path) -> N
     assert rpscli.figures.phase_plane.__doc__ == "The rate of rotation over the rotation."
 
 
-def test_a_command(example: None, rps: Invoke, workplace: Path) -> None:
+def test_a_command(example, rps, workplace):
     slenderness = rpscli.load_case("small.yaml").structure.bearing.slenderness
     assert float(rps("widths", "small.yaml").stdout) == pytest.approx(
         1.0 / slenderness, rel=1e-3
@@ -159,8 +156,8 @@ def test_a_command(example: None, rps: Invoke, workplace: Path) -> None:
 
 
 def test_a_command_that_fails_is_told_as_its_package(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, forgotten: None, rps: Invoke
-) -> None:
+    tmp_path, monkeypatch, forgotten, rps
+):
     code = """import click
 @click.command("stumbles")
 def stumbles(): raise KeyError("gone")
@@ -182,7 +179,7 @@ modal = no_command = 3
     assert told.count("rps has one of this name, which is taken") == 2
 
 
-def test_a_study(example: None, rps_json: InvokeJson, workplace: Path) -> None:
+def test_a_study(example, rps_json, workplace):
     (workplace / "study.yaml").write_text(STUDY, encoding="utf-8")
     document = rps_json("sweep", "study.yaml", "-o", "here")
     table = document["reports"]["worst"]["rows"]
@@ -195,7 +192,16 @@ def test_a_study(example: None, rps_json: InvokeJson, workplace: Path) -> None:
     assert (workplace / "here" / "worst.png").exists()
 
 
-def test_what_is_installed_is_listed(example: None, rps_json: InvokeJson) -> None:
+def test_the_figure_of_a_study_is_drawn(example, figures, rps, workplace):
+    (workplace / "study.yaml").write_text(STUDY, encoding="utf-8")
+    rps("sweep", "study.yaml", "-o", "here", "--figures", "png,svg")
+    with Image.open(workplace / "here" / "worst.png") as picture:
+        assert min(picture.size) > 300
+        assert len(set(picture.convert("L").tobytes())) > 10  # it is not empty
+    assert "<svg" in (workplace / "here" / "worst.svg").read_text(encoding="utf-8")
+
+
+def test_what_is_installed_is_listed(example, rps_json):
     found = {each["name"]: each for each in rps_json("explain", "plugins")["plugins"]}
     names = [
         "tidy",
@@ -228,9 +234,7 @@ CRUSHING = (
 WITH_LAWS = ("--set", f"podium.devices=[{OIL}]", "--set", f"podium.impact={CRUSHING}")
 
 
-def test_laws_in_a_case(
-    example: None, rps: Invoke, rps_json: InvokeJson, workplace: Path
-) -> None:
+def test_laws_in_a_case(example, rps, rps_json, workplace):
     found = rps_json("timehistory", "small.yaml", *WITH_LAWS, "-o", "here")
     (damper,) = found["devices"]
     assert damper["kind"] == "oil"
@@ -255,9 +259,7 @@ def test_laws_in_a_case(
     )
 
 
-def test_constants_of_laws_are_axes(
-    example: None, rps_json: InvokeJson, workplace: Path
-) -> None:
+def test_constants_of_laws_are_axes(example, rps_json, workplace):
     devices = f"  devices: [{OIL}]\n  impact: {CRUSHING}\nrecord:"
     write_case("laws.yaml", ("record:", devices))
     vary = "vary: [{podium.devices.0.relief_force: [200 kN, 400 kN]},"
@@ -296,9 +298,7 @@ def test_constants_of_laws_are_axes(
         ),
     ],
 )
-def test_constants_are_checked(
-    example: None, workplace: Path, given: str, said: str
-) -> None:
+def test_constants_are_checked(example, workplace, given, said):
     rpscli.load_case(
         "small.yaml", [f"podium.devices=[{OIL}]"]
     )  # its keys are known from here on
@@ -306,9 +306,7 @@ def test_constants_are_checked(
         rpscli.load_case("small.yaml", [f"podium.devices=[{given}]"])
 
 
-def test_what_is_broken_is_told_and_stays_alone(
-    broken: None, rps: Invoke, workplace: Path
-) -> None:
+def test_what_is_broken_is_told_and_stays_alone(broken, rps, workplace):
     motion = rpscli.load_record("pulse:sine?amplitude=0.3g&period=0.5")
     assert motion.scaled_to("PGV", 1.0).npts == motion.npts  # ours stays ours
     named = r"XYZ of broken-plugins 1\.0 \(no_such_module:X\): ModuleNotFoundError"
@@ -410,7 +408,7 @@ LYING = {
 
 
 @pytest.fixture
-def liars(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, forgotten: None) -> None:
+def liars(tmp_path, monkeypatch, forgotten):
     """A package that gives what it should not, under names that it should not have either."""
     groups = {
         kind: {name: f"liars:{name}" for name in names} for kind, names in LYING.items()
@@ -426,9 +424,7 @@ def liars(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, forgotten: None) -> N
     monkeypatch.delitem(sys.modules, "liars", raising=False)
 
 
-def test_what_lies_is_named(
-    liars: None, figures: None, rps: Invoke, workplace: Path
-) -> None:
+def test_what_lies_is_named(liars, figures, rps, workplace):
     """Wrong values, names and ends of the process are faults of the package, and told as such."""
     motion = rpscli.load_record("pulse:sine?amplitude=0.3g&period=0.5")
     for name in LYING["measures"]:
@@ -478,8 +474,8 @@ def test_what_lies_is_named(
     assert listed.replace("\n", " ").count("taken") == 1
 
 
-def test_laws_that_lie_are_named(liars: None, workplace: Path) -> None:
-    def used(name: str) -> None:
+def test_laws_that_lie_are_named(liars, workplace):
+    def used(name):
         constant = "gap: 1" if name == "ours" else "c_own: 1000"
         devices = f"podium.devices=[{{kind: {name}, {constant}}}]"
         structure = rpscli.load_case("small.yaml", [devices]).structure
@@ -493,9 +489,7 @@ def test_laws_that_lie_are_named(liars: None, workplace: Path) -> None:
         rpscli.load_case("small.yaml", ["podium.impact=bounces"])
 
 
-def test_stored_points_know_the_file_of_a_law(
-    liars: None, tmp_path: Path, workplace: Path
-) -> None:
+def test_stored_points_know_the_file_of_a_law(liars, tmp_path, workplace):
     case = rpscli.load_case("small.yaml", ["podium.devices=[{kind: sound, c_own: 1000}]"])
     before = System.of_case(case).digest
     assert System.of_case(case).digest == before
@@ -505,12 +499,10 @@ def test_stored_points_know_the_file_of_a_law(
     assert System.of_case(case).digest != before
 
 
-def test_nobody_is_asked_for_names_of_ours(
-    forgotten: None, monkeypatch: pytest.MonkeyPatch, workplace: Path
-) -> None:
+def test_nobody_is_asked_for_names_of_ours(forgotten, monkeypatch, workplace):
     entry_points = importlib.metadata.entry_points
 
-    def asked(**given: str) -> Any:
+    def asked(**given):
         assert not given.get("group", "").startswith("rpscli"), (
             "other packages were looked for"
         )
@@ -532,7 +524,7 @@ def test_nobody_is_asked_for_names_of_ours(
 
 
 @pytest.mark.long
-def test_the_example_is_installed_by_pip(tmp_path: Path, workplace: Path) -> None:
+def test_the_example_is_installed_by_pip(tmp_path, workplace):
     """As users do it, into a folder of its own; pip fetches what builds it."""
     site = tmp_path / "site"
     install, *lines = of_blocks(EXAMPLE / "README.md")

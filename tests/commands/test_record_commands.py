@@ -1,7 +1,5 @@
 """rps record: look, draw, convert, make."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
@@ -12,13 +10,11 @@ import rpscli
 from rpscli.records.loading import expand_sources, load_components, load_record
 from rpscli.records.measures import intensity_measures
 
-from .conftest import Invoke, InvokeJson
-
 NOISE = "synthetic:?pga=0.3g&seed=5&duration=8"
 SINE = "pulse:sine?amplitude=0.3g&period=1"
 
 
-def test_info(rps_json: InvokeJson, rps: Invoke) -> None:
+def test_info(rps_json, rps):
     document = rps_json("record", "info", NOISE)
     motion = load_record(NOISE)
     measures = intensity_measures(motion)
@@ -30,9 +26,7 @@ def test_info(rps_json: InvokeJson, rps: Invoke) -> None:
     assert "m/s2 = 0.3000 g" in table
 
 
-def test_a_file_that_states_neither_step_nor_unit(
-    rps: Invoke, rps_json: InvokeJson
-) -> None:
+def test_a_file_that_states_neither_step_nor_unit(rps, rps_json):
     Path("bare.txt").write_text("0.0\n0.1\n-0.2\n0.05\n", encoding="utf-8")
     rps("record", "info", "bare.txt", exit_code=3)
     document = rps_json("record", "info", "bare.txt", "--dt", "0.02", "--units", "g")
@@ -40,9 +34,7 @@ def test_a_file_that_states_neither_step_nor_unit(
     assert document["duration"] == pytest.approx(0.06, rel=1e-12)
 
 
-def test_both_components_are_told_drawn_and_written(
-    rps: Invoke, rps_json: InvokeJson
-) -> None:
+def test_both_components_are_told_drawn_and_written(rps, rps_json):
     """What is written is a pair again; turned by 90 deg, what acted along x acts along y."""
     for name, seed in (("a.txt", 6), ("b.txt", 7)):
         rps("record", "convert", NOISE.replace("seed=5", f"seed={seed}"), "-o", name)
@@ -69,7 +61,7 @@ def test_both_components_are_told_drawn_and_written(
 
 
 @pytest.mark.usefixtures("figures")
-def test_plot(rps_json: InvokeJson) -> None:
+def test_plot(rps_json):
     document = rps_json("record", "plot", NOISE, "-o", "drawn")
     assert sorted(Path(file).name for file in document["files"]) == [
         "record.csv", "record.png", "run.json", "spectrum.csv"
@@ -94,9 +86,7 @@ def test_plot(rps_json: InvokeJson) -> None:
         (["-o", "folder", "--to", "text"], "folder/{name}.txt", 1e-8),
     ],
 )
-def test_a_converted_record_is_the_same_record(
-    rps_json: InvokeJson, options: list[str], file: str, digits: float
-) -> None:
+def test_a_converted_record_is_the_same_record(rps_json, options, file, digits):
     document = rps_json("record", "convert", NOISE, *options)
     path = file.format(name=document["name"])
     assert str(Path(path)) in document["files"]
@@ -105,14 +95,14 @@ def test_a_converted_record_is_the_same_record(
     assert np.abs(after.acceleration - before.acceleration).max() <= digits * before.pga
 
 
-def test_a_scaled_conversion(rps: Invoke) -> None:
+def test_a_scaled_conversion(rps):
     rps("record", "convert", SINE, "--scale", "2", "-o", "twice.at2")
     assert load_record("twice.at2").pga == pytest.approx(
         2.0 * load_record(SINE).pga, rel=1e-7
     )
 
 
-def test_a_file_is_not_overwritten(rps: Invoke) -> None:
+def test_a_file_is_not_overwritten(rps):
     Path("mine.at2").write_text("precious", encoding="utf-8")
     rps("record", "convert", SINE, "-o", "mine.at2", exit_code=7, says="--force")
     assert Path("mine.at2").read_text(encoding="utf-8") == "precious"
@@ -120,7 +110,7 @@ def test_a_file_is_not_overwritten(rps: Invoke) -> None:
     assert load_record("mine.at2").npts == load_record(SINE).npts
 
 
-def test_synth_says_that_nobody_recorded_it(rps: Invoke) -> None:
+def test_synth_says_that_nobody_recorded_it(rps):
     rps("record", "synth", NOISE, "-o", "made.at2")
     assert "SYNTHETIC, NOT A RECORDING" in Path("made.at2").read_text(encoding="utf-8")
     rps("record", "synth", "made.at2", exit_code=2, says="convert")
@@ -138,7 +128,7 @@ SELECT = (
 )
 
 
-def test_select(rps_json: InvokeJson, rps: Invoke) -> None:
+def test_select(rps_json, rps):
     Path("pool").mkdir()
     for seed in (1, 2, 3, 4):
         synthetic = f"synthetic:?pga=0.2g&seed={seed}&duration=6"
@@ -190,7 +180,7 @@ def test_select(rps_json: InvokeJson, rps: Invoke) -> None:
     assert by_pgv["requirements"] is None
 
 
-def test_select_for_a_case(rps_json: InvokeJson, rps: Invoke) -> None:
+def test_select_for_a_case(rps_json, rps):
     """From 0.2 T1 to the secant period of M u/F at the limit; candidates by their duration."""
     Path("pool").mkdir()
     for seed, duration in enumerate((6, 6, 20)):

@@ -1,20 +1,18 @@
 """`rps report`: pages of cases, of studies, and of folders of results."""
 
-from __future__ import annotations
-
 import json
 import re
-from collections.abc import Callable, Sequence
 from html import unescape
 from pathlib import Path
-from typing import Any
 
 import pytest
+from paper_structures import python
+from sweep.small_studies import ROOT
 
 from rpscli.report.table import shown
 from rpscli.sweep.run import Progress
 
-from .conftest import Invoke, InvokeJson, write_case
+from .conftest import write_case
 
 STUDY = """\
 rps: 1
@@ -30,19 +28,19 @@ DRAWING = b'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 2 1"/>'
 
 
 @pytest.fixture(autouse=True)
-def _drawings_cost_nothing(figures: None, monkeypatch: pytest.MonkeyPatch) -> None:
+def _drawings_cost_nothing(figures, monkeypatch):
     """Real figures on a page are looked at in tests/report."""
     monkeypatch.setattr("rpscli.report.figures.style.picture", lambda *_: DRAWING)
 
 
-def text_of(file: str | Path) -> str:
+def text_of(file):
     """The page without its tags."""
     text = Path(file).read_text(encoding="utf-8")
     text = re.sub(r"<style>.*?</style>|<svg.*?</svg>", "", text, flags=re.DOTALL)
     return " ".join(re.sub(r"<[^>]*>", " ", text).split())
 
 
-def compared(text: str) -> int:
+def compared(text):
     """How many stored results are the same as on a page, which is all."""
     (found,) = re.findall(
         r"(\d+) of (\d+) stored results are the same to the last digit", text
@@ -51,14 +49,11 @@ def compared(text: str) -> int:
     return int(found[0])
 
 
-Page = Callable[..., str]
-
-
 @pytest.fixture
-def page(rps: Invoke) -> Page:
+def page(rps):
     """Write a page, on which all of these stand; its text."""
 
-    def made(*arguments: str, exit_code: int = 0, shows: Sequence[str] = ()) -> str:
+    def made(*arguments, exit_code=0, shows=()):
         rps("report", *arguments, "-o", "out.html", exit_code=exit_code)
         text = text_of("out.html")
         assert [part for part in shows if part not in text] == []
@@ -68,14 +63,12 @@ def page(rps: Invoke) -> Page:
 
 
 @pytest.fixture
-def study(workplace: Path) -> str:
+def study(workplace):
     (workplace / "study.yaml").write_text(STUDY, encoding="utf-8")
     return "study.yaml"
 
 
-def test_a_case_and_its_history_are_on_one_page(
-    rps: Invoke, rps_json: InvokeJson
-) -> None:
+def test_a_case_and_its_history_are_on_one_page(rps, rps_json):
     document = rps_json(
         "report", "small.yaml", "-o", "out.html", "--set", "limits.drift_ratio=0.9"
     )
@@ -97,7 +90,7 @@ def test_a_case_and_its_history_are_on_one_page(
     assert len(document["neighbours"]) == 7
 
 
-def test_a_case_without_a_record_ends_with_statics(page: Page) -> None:
+def test_a_case_without_a_record_ends_with_statics(page):
     write_case("bare.yaml", ("record:", "# record:"))
     text = page(
         "bare.yaml", shows=("The case names no ground motion", "Derived quantities")
@@ -105,20 +98,18 @@ def test_a_case_without_a_record_ends_with_statics(page: Page) -> None:
     assert "rps timehistory" not in text
 
 
-def test_limits_are_judged_and_the_page_is_there_all_the_same(page: Page) -> None:
+def test_limits_are_judged_and_the_page_is_there_all_the_same(page):
     limit = ("--fail-on", "rotation_ratio=1e-6")
     page("small.yaml", *limit, exit_code=10, shows=("1 of 1 limits exceeded", "EXCEEDED"))
 
 
-def test_a_folder_is_computed_anew_and_compared(rps: Invoke, page: Page) -> None:
+def test_a_folder_is_computed_anew_and_compared(rps, page):
     slenderness = "podium.bearing.slenderness=0.14"
     rps("timehistory", "small.yaml", "-o", "old", "--scale", "1.2", "--set", slenderness)
     assert compared(page("old", shows=(f"--set {slenderness}", "--scale 1.2"))) > 40
 
 
-def test_a_folder_whose_numbers_or_case_have_changed_says_so(
-    rps: Invoke, page: Page
-) -> None:
+def test_a_folder_whose_numbers_or_case_have_changed_says_so(rps, page):
     rps("timehistory", "small.yaml", "-o", "old")
     summary = Path("old/summary.json")
     document = json.loads(summary.read_text(encoding="utf-8"))
@@ -128,10 +119,10 @@ def test_a_folder_whose_numbers_or_case_have_changed_says_so(
     page("old", shows=("small.yaml has changed since", *found))
 
 
-def changed(document: dict[str, Any], path: str, value: object) -> str:
+def changed(document, path, value):
     """The document as JSON with another value at a dotted place."""
     *above, last = path.split(".")
-    place: Any = document
+    place = document
     for key in above:
         place = place[key]
     place[last] = value
@@ -153,9 +144,7 @@ def changed(document: dict[str, Any], path: str, value: object) -> str:
         ("name", "../../x", "name must be that of a file"),
     ],
 )
-def test_what_a_folder_says_is_checked(
-    rps: Invoke, path: str, value: object, said: str
-) -> None:
+def test_what_a_folder_says_is_checked(rps, path, value, said):
     rps("timehistory", "small.yaml", "-o", "old", "--figures", "none")
     run = Path("old/run.json")
     run.write_text(
@@ -169,7 +158,7 @@ def test_what_a_folder_says_is_checked(
 @pytest.mark.parametrize(
     "text", ["[1]", "{", "[" * 100_000, '{"max_rotation": ' + "9" * 400 + "}"]
 )
-def test_results_that_cannot_be_compared_are_said(rps: Invoke, text: str) -> None:
+def test_results_that_cannot_be_compared_are_said(rps, text):
     rps("timehistory", "small.yaml", "-o", "old", "--figures", "none")
     Path("old/summary.json").write_text(text, encoding="utf-8")
     rps("report", "old", "-o", "out.html")
@@ -177,7 +166,7 @@ def test_results_that_cannot_be_compared_are_said(rps: Invoke, text: str) -> Non
     assert "so nothing was compared" in shown or "Different: 1;" in shown
 
 
-def test_the_record_of_the_command_line_is_found_again(rps: Invoke, page: Page) -> None:
+def test_the_record_of_the_command_line_is_found_again(rps, page):
     pulse = "pulse:sine?amplitude=0.2g&period=0.8"
     rps("timehistory", "small.yaml", "-o", "old", "--record", pulse)
     text = page("old")
@@ -186,7 +175,7 @@ def test_the_record_of_the_command_line_is_found_again(rps: Invoke, page: Page) 
     assert "any more" not in text
 
 
-def test_a_study_is_computed_once(rps: Invoke, study: str, rps_json: InvokeJson) -> None:
+def test_a_study_is_computed_once(rps, study, rps_json):
     first = rps(
         "report", study, "-o", "out.html", exit_code=None, says="computed 4 points"
     )
@@ -214,7 +203,7 @@ def test_a_study_is_computed_once(rps: Invoke, study: str, rps_json: InvokeJson)
     assert text_of("again.html").replace("again", "out")[200:400] == text[200:400]
 
 
-def test_only_an_earlier_page_of_the_same_is_replaced(rps: Invoke) -> None:
+def test_only_an_earlier_page_of_the_same_is_replaced(rps):
     Path("mine.html").write_text("my notes", encoding="utf-8")
     rps("report", "small.yaml", "-o", "mine.html", exit_code=7)
     assert Path("mine.html").read_text(encoding="utf-8") == "my notes"
@@ -243,9 +232,7 @@ def test_only_an_earlier_page_of_the_same_is_replaced(rps: Invoke) -> None:
         ),
     ],
 )
-def test_what_makes_no_page(
-    rps: Invoke, study: str, words: tuple[str, ...], said: str
-) -> None:
+def test_what_makes_no_page(rps, study, words, said):
     rps("timehistory", "small.yaml", "-o", "old", "--figures", "none")
     rps("timehistory", "small.yaml", "-o", "above/one", "--figures", "none")
     rps("modal", "small.yaml", "-o", "modes", "--figures", "none")
@@ -257,15 +244,13 @@ def test_what_makes_no_page(
     assert not list(Path().rglob("*.html"))
 
 
-def test_titles_with_tags_are_harmless(rps: Invoke) -> None:
+def test_titles_with_tags_are_harmless(rps):
     write_case("small.yaml", ("Three storeys [test]", "<script>x</script> & co"))
     rps("report", "small.yaml", "-o", "out.html")
     assert "<script" not in Path("out.html").read_text(encoding="utf-8")
 
 
-def test_a_stopped_study_goes_on(
-    rps: Invoke, study: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_stopped_study_goes_on(rps, study, monkeypatch):
     with monkeypatch.context() as patch:
         patch.setattr("rpscli.studies.run", lambda *_: Progress(9, 0, 1, 0, 1.0))
         result = rps("report", study, "-o", "out.html", exit_code=130)
@@ -274,10 +259,23 @@ def test_a_stopped_study_goes_on(
     assert rps("report", study, "-o", "out.html", exit_code=None).exit_code in {0, 10}
 
 
+@pytest.mark.posix
+def test_a_ctrl_c_in_the_study_of_a_page_is_heard_and_the_command_goes_on(study, rps):
+    """A signal of the system, in a process of its own."""
+    Path(study).write_text(STUDY.replace("[1, 2]", "{low: 1, high: 18, count: 18}"))
+    program = ROOT / "tests" / "sweep" / "interrupted.py"
+    words = ("report", study, "-o", "out.html")
+    stopped = python(str(program), *words, folder=Path.cwd(), exit_code=130)
+    assert "the same command continues" in stopped.stderr
+    assert not Path("out.html").exists()
+    assert rps(*words, exit_code=None).exit_code in {0, 10}
+    assert "A small study" in text_of("out.html")
+
+
 PULSES = [f"--record=pulse:sine?amplitude={size}g&period=1" for size in (0.2, 0.3)]
 
 
-def test_several_records_are_on_one_page(rps: Invoke, rps_json: InvokeJson) -> None:
+def test_several_records_are_on_one_page(rps, rps_json):
     """Every record, mean and largest: the numbers of the time histories."""
     document = rps_json(
         "report", "small.yaml", *PULSES, "--scale", "1.1", "-o", "out.html"
@@ -303,9 +301,7 @@ def test_several_records_are_on_one_page(rps: Invoke, rps_json: InvokeJson) -> N
     )
 
 
-def test_what_moves_the_worst_history_stands_on_its_page(
-    rps: Invoke, rps_json: InvokeJson, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_moves_the_worst_history_stands_on_its_page(rps, rps_json, monkeypatch):
     """As `rps budget` tells it of the record that turns the columns most."""
     write_case("small.yaml", more="limits: {rotation_ratio: 0.2}\n")
     weak, strong = (f"pulse:sine?amplitude=0.{peak}g&period=0.8" for peak in (2, 4))
@@ -337,7 +333,7 @@ def test_what_moves_the_worst_history_stands_on_its_page(
     assert of_case["results"][1]["sentences"] in text_of("old.html")
 
 
-def test_values_stand_as_they_were_written(rps: Invoke) -> None:
+def test_values_stand_as_they_were_written(rps):
     rps(
         "report",
         "small.yaml",
@@ -359,7 +355,7 @@ def test_values_stand_as_they_were_written(rps: Invoke) -> None:
     assert "superstructure.storey_mass 210000" in text_of("again.html")
 
 
-def test_whoever_signs_is_named_or_signs_on_paper(rps: Invoke) -> None:
+def test_whoever_signs_is_named_or_signs_on_paper(rps):
     rps(
         "report",
         "small.yaml",
@@ -399,7 +395,7 @@ SOFT = ("--set", "podium.impact.factor=0.5")
 """A restitution below 0.5, so that what half of the loss makes of the design is shown."""
 
 
-def test_a_design_has_a_page(rps: Invoke) -> None:
+def test_a_design_has_a_page(rps):
     Path("design.yaml").write_text(DESIGN, encoding="utf-8")
     result = rps(
         "report", "design.yaml", "-o", "out.html", "--json", *SOFT, exit_code=None

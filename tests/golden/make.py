@@ -9,15 +9,12 @@ cannot be the same twice is masked: times, versions, digests of sources, places.
 compared as files. Nothing of this is a test: numbers differ in their last digits between machines.
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
 from fnmatch import fnmatch
 from pathlib import Path
 from typing import NamedTuple
@@ -79,7 +76,7 @@ class Run(NamedTuple):
     columns: int = 120
 
 
-def runs() -> Iterator[Run]:
+def runs():
     """Every command that is looked at, by the folder that it leaves."""
     for case in CASES:
         file = f"cases/{case}.yaml"
@@ -202,7 +199,7 @@ MASKS = (
 )
 
 
-def masked(text: str, place: Path) -> str:
+def masked(text, place):
     """Without what differs from run to run."""
     text = text.replace(str(place), "_here_").replace(str(ROOT), "_root_")
     for pattern, by in MASKS:
@@ -210,7 +207,7 @@ def masked(text: str, place: Path) -> str:
     return text
 
 
-def documents() -> Iterator[tuple[str, str]]:
+def documents():
     """Files that README and GUIDE tell their readers to write."""
     for document in ("README.md", "rpscli/GUIDE.md"):
         text = (ROOT / document).read_text("utf-8")
@@ -220,7 +217,7 @@ def documents() -> Iterator[tuple[str, str]]:
             yield block[1], block[0]
 
 
-def furnish(place: Path) -> None:
+def furnish(place):
     """The working folder of every run: the shipped cases and the files of the tour."""
     place.mkdir(parents=True)
     shutil.copytree(ROOT / "cases", place / "cases")
@@ -231,7 +228,7 @@ def furnish(place: Path) -> None:
             (place / name).write_text(text)
 
 
-def perform(run: Run, out: Path) -> None:
+def perform(run, out):
     """One command in a folder of its own, where its files stay, masked."""
     place = out / run.name
     furnish(place)
@@ -260,13 +257,13 @@ def perform(run: Run, out: Path) -> None:
             folder.rmdir()
 
 
-def main() -> None:
+def main():
     """Perform all runs, or those whose names match a pattern."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("out", type=Path)
     parser.add_argument("--only", default="*", help="pattern of the names, as 'paper-*'")
     chosen = parser.parse_args()
-    out: Path = chosen.out.resolve()
+    out = chosen.out.resolve()
     for run in runs():
         if fnmatch(run.name, chosen.only):
             shutil.rmtree(out / run.name, ignore_errors=True)

@@ -1,9 +1,6 @@
 """A place for each hunt, and kernels, whose compilation takes longer than any trial may."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,12 +15,12 @@ from rpscli.records.ground_motion import MotionComponents
 
 
 @pytest.fixture(autouse=True)
-def _workplace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def _workplace(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
 
 @pytest.fixture(scope="session", autouse=True)
-def _compiled() -> None:
+def _compiled():
     record, settings = ground(np.zeros(2), 0.01), TimeHistorySettings(0.0)
     for storeys, devices in ((1, ()), (40, ()), (1, (FrictionDamper(1e5),))):
         structure = replace(podium(storeys), devices=devices)

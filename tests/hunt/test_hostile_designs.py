@@ -1,14 +1,9 @@
 """Damaged design files, studies that no file could say, films, drawings, reports and pages."""
 
-from __future__ import annotations
-
 import math
 import re
 import shutil
-from collections.abc import Callable
 from pathlib import Path
-from random import Random
-from typing import Any
 
 import pytest
 from click.testing import CliRunner
@@ -40,13 +35,13 @@ DESIGN_KEYS = [".".join(map(str, path)) for path in known_paths(DesignFile)]
 HUGE = 10**390
 
 
-def test_the_design_is_sound() -> None:
+def test_the_design_is_sound():
     Path("design.yaml").write_text(DESIGN, encoding="utf-8")
     assert judged("design", "design.yaml", "--dry-run") == "done"
 
 
 @hunted("designs", 6, 1200)
-def test_designs(random: Random) -> str:
+def test_designs(random):
     Path("design.yaml").write_text(
         mutated(DESIGN, random), encoding="utf-8", errors="replace"
     )
@@ -54,14 +49,14 @@ def test_designs(random: Random) -> str:
 
 
 @shares
-def test_values_of_designs(long: bool) -> None:
+def test_values_of_designs(long):
     values = [*VALUES, str(HUGE), "[1, 2]", "[2, 1]", "[.nan, 1]", f"[1, {HUGE}]"]
     sums = [
         "{podium.bearing.slenderness: 1e308, plus: 1e308}",
         "{max_rotation: {fractile: 2}}",
     ]
 
-    def trial(random: Random) -> str:
+    def trial(random):
         Path("design.yaml").write_text(DESIGN, encoding="utf-8")
         change = f"{random.choice([*DESIGN_KEYS, *CASE_KEYS])}={random.choice([*values, *sums])}"
         return judged("design", "design.yaml", "--dry-run", "--set", change)
@@ -94,7 +89,7 @@ def test_values_of_designs(long: bool) -> None:
         ),
     ],
 )
-def test_slips_in_designs_are_told(line: str, said: str) -> None:
+def test_slips_in_designs_are_told(line, said):
     key = line.split(":", maxsplit=1)[0] + ":"
     text = "\n".join(
         [*(old for old in DESIGN.splitlines() if not old.startswith(key)), line]
@@ -103,22 +98,22 @@ def test_slips_in_designs_are_told(line: str, said: str) -> None:
         parse_design(text, "design.yaml")
 
 
-STUDY: dict[str, Any] = {
+STUDY = {
     "rps": 1,
     "analysis": "pushover",
     "base": f"{CASES}/rigid_frame.yaml",
 }
-CIRCLE: list[Any] = []
+CIRCLE = []
 CIRCLE.append(CIRCLE)
 
 
 @pytest.mark.parametrize("value", [CIRCLE, object(), {1, 2}, 1j, b"x", {(1, 2): 3}])
-def test_studies_that_no_file_could_say(value: object) -> None:
+def test_studies_that_no_file_could_say(value):
     with pytest.raises(CaseError, match="cannot be written to a file"):
         load_study(STUDY | {"title": value})
 
 
-def test_studies_say_paths_and_refuse_numbers_that_are_none() -> None:
+def test_studies_say_paths_and_refuse_numbers_that_are_none():
     study = load_study(STUDY | {"base": CASES / "rigid_frame.yaml"})
     assert len(study) == 1
     for jobs in (0, -1, 10**9):
@@ -127,7 +122,7 @@ def test_studies_say_paths_and_refuse_numbers_that_are_none() -> None:
     with pytest.raises(CaseError, match="finite"):
         load_study(STUDY | {"vary": [{"podium.bearing.slenderness": [math.nan]}]})
     with pytest.raises(KeyError, match="not a column"):
-        study.run()[3]  # type: ignore[index]
+        study.run()[3]
 
 
 PLACES = ["x" * 5000, f"new/{'x' * 5000}", "a/" * 3000, "a\0b", "file/x"]
@@ -136,11 +131,11 @@ PLACES = ["x" * 5000, f"new/{'x' * 5000}", "a/" * 3000, "a\0b", "file/x"]
 @pytest.mark.parametrize(
     "place", PLACES, ids=["name", "path", "depth", "zero byte", "file"]
 )
-def test_folders_that_cannot_be_are_told_to_python_as_well(place: str) -> None:
+def test_folders_that_cannot_be_are_told_to_python_as_well(place):
     Path("file").touch()
     study = load_study(STUDY)
     result = study.run()
-    calls: list[Callable[[], object]] = [
+    calls = [
         lambda: study.run(place),
         lambda: result.write(place),
         lambda: result.write("new", style=place),
@@ -161,11 +156,11 @@ FILM_OPTIONS = ["--animate-speed", "--animate-from", "--animate-to", "--animate-
 
 
 @shares
-def test_films(long: bool) -> None:
+def test_films(long):
     """What cannot be shown is refused, most of it before the history, and leaves nothing behind."""
     case, record = f"{CASES}/rigid_frame.yaml", "pulse:sine?amplitude=0.3g&period=0.8"
 
-    def trial(random: Random) -> str:
+    def trial(random):
         Path("file").touch()
         Path("folder.gif").mkdir(exist_ok=True)
         before = {*Path().rglob("*")}
@@ -214,7 +209,7 @@ EXTREMES = {
 
 
 @hunted("drawings", 4, 300)
-def test_drawings_of_bearings(random: Random) -> str:
+def test_drawings_of_bearings(random):
     keys = random.sample(list(EXTREMES), random.choice([1, 1, 2]))
     changes = [f"{key}={random.choice(EXTREMES[key])}" for key in keys]
     options = [word for change in changes for word in ("--set", change)]
@@ -227,7 +222,7 @@ def test_drawings_of_bearings(random: Random) -> str:
     return end
 
 
-def test_styles_are_files(tmp_path: Path) -> None:
+def test_styles_are_files(tmp_path):
     for place in ("/dev/zero", str(tmp_path), "a\0b"):
         with pytest.raises(UsageError, match="cannot be read"):
             read_style(Path(place))
@@ -253,7 +248,7 @@ EMPTY = b'<svg xmlns="http://www.w3.org/2000/svg" width="1pt" height="1pt"/>'
 
 
 @pytest.fixture(scope="module")
-def stored(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def stored(tmp_path_factory):
     """A study and a history that were computed."""
     folder = tmp_path_factory.mktemp("stored")
     (folder / "study.yaml").write_text(COMPUTED, encoding="utf-8")
@@ -269,8 +264,8 @@ def stored(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @shares
-def test_options_of_reports(stored: Path, long: bool) -> None:
-    def trial(random: Random) -> str:
+def test_options_of_reports(stored, long):
+    def trial(random):
         kind, keys = random.choice([*REPORT_OPTIONS.items()])
         options = ", ".join(
             f"{key}: {random.choice([*LIKELY, *LIKELY, random.choice(VALUES)])}"
@@ -292,12 +287,10 @@ def test_options_of_reports(stored: Path, long: bool) -> None:
 
 
 @shares
-def test_pages_of_damaged_results(
-    stored: Path, long: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_pages_of_damaged_results(stored, long, tmp_path, monkeypatch):
     monkeypatch.setattr("rpscli.report.figures.style.picture", lambda *_: EMPTY)
 
-    def trial(random: Random) -> str:
+    def trial(random):
         folder = tmp_path / "copy"
         shutil.rmtree(folder, ignore_errors=True)
         shutil.copytree(stored / random.choice(["sweep", "history"]), folder)

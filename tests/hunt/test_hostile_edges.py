@@ -6,24 +6,19 @@ pytest tests/hunt/test_hostile_edges.py                                  # a few
 RPS_HUNT_SEED=7 pytest -m long tests/hunt/test_hostile_edges.py          # hundreds of each
 """
 
-from __future__ import annotations
-
 import json
 import math
 import os
 import shutil
 import signal
 import time
-from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from random import Random
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner, Result
+from click.testing import CliRunner
 from commands.test_identify import FRAME
 from paper_structures import needs_compiled_kernels
 from sweep.small_studies import BASE, STUDY
@@ -63,12 +58,12 @@ SCALES = ["1", "1e-9", "1e9", "-1", "0", "1e300", "nan"]
 
 
 @shares
-def test_traces(long: bool) -> None:
+def test_traces(long):
     """What is refused writes nothing, and what is written has intervals that say something."""
     for name, text in (("frame.yaml", FRAME), ("building.yaml", BASE)):
         Path(name).write_text(text, encoding="utf-8")
 
-    def trial(random: Random) -> str:
+    def trial(random):
         test = random.choice([*TRACES])
         factor, first = float(random.choice(SCALES)), random.randrange(300)
         noise = random.choice([0.0, 1e-6, 1e-3, 0.1])
@@ -89,11 +84,11 @@ def test_traces(long: bool) -> None:
 
 
 @shares
-def test_scores(long: bool) -> None:
+def test_scores(long):
     lines = problem_files()[ANSWERS].decode().splitlines()[:40]
     text = "\n".join([lines[0], *(f"{line}0.5" for line in lines[1:])])
 
-    def trial(random: Random) -> str:
+    def trial(random):
         Path("answers.csv").write_text(
             mutated(text, random), encoding="utf-8", errors="replace"
         )
@@ -111,7 +106,7 @@ VALUES = [
 ]  # fmt: skip
 
 
-def places_of(value: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+def places_of(value, path=()):
     """Of all that a document holds."""
     items = value.items() if isinstance(value, dict) else enumerate(value)
     found = [(*path, key) for key, _ in items]
@@ -124,7 +119,7 @@ def places_of(value: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
     ]
 
 
-def otherwise(text: str, random: Random) -> str:
+def otherwise(text, random):
     """A JSON document with another value, or without one, at some place."""
     document = json.loads(text)
     for _ in range(random.choice([1, 1, 2])):
@@ -140,7 +135,7 @@ def otherwise(text: str, random: Random) -> str:
 
 
 @shares
-def test_folders_of_results(long: bool) -> None:
+def test_folders_of_results(long):
     """Of histories, studies and designs: `report` makes a page, or says what is wrong where."""
     Path("base.yaml").write_text(BASE, encoding="utf-8")
     record = "pulse:sine?amplitude=0.2g&period=0.6&dt=0.01"
@@ -152,7 +147,7 @@ def test_folders_of_results(long: bool) -> None:
     for name, words in again.items():
         assert judged(*words, "-o", name, "--figures", "none") == "done"
 
-    def trial(random: Random) -> str:
+    def trial(random):
         shutil.rmtree("copy", ignore_errors=True)
         kind = random.choice(["one", "two", "study"])
         shutil.copytree(kind, "copy")
@@ -171,7 +166,7 @@ def test_folders_of_results(long: bool) -> None:
     hunt("folders of results", trial, 3, 120 if long else None)
 
 
-GIVEN: list[Any] = [  # by functions of other packages; errors are raised
+GIVEN = [  # by functions of other packages; errors are raised
     None, True, 0.5, -1.0, 0.0, 1j, "5", b"5", [1.0], (), {}, np.ones(2), np.array(1.0),
     np.float64(2.0), np.nan, math.inf, 10**400, object(), Found({}, None), iter([1]),
     IntensityMeasure("m", lambda *_: 1.0), SystemExit(3), RecursionError("deep"), KeyError("x"),
@@ -183,11 +178,11 @@ class Options(ReportOptions):
     """None of its own."""
 
 
-def lying(kind: str, random: Random) -> Any:
+def lying(kind, random):
     """An item of a kind of which something is not what it should be."""
     given = random.choice(GIVEN)
 
-    def gives(*_: Any) -> Any:
+    def gives(*_):
         if isinstance(given, BaseException):
             raise given
         return given
@@ -201,7 +196,7 @@ def lying(kind: str, random: Random) -> Any:
         lambda *_: Found({"": [given]}, None, shown={"": {}}), gives,
     ])  # fmt: skip
     spectrum = {"pgv": given} if random.random() < 0.3 else {"pgv": None}
-    items: dict[str, Callable[[], Any]] = {
+    items = {
         "measures": lambda: IntensityMeasure(random.choice(["m/s", given]), gives),
         "formats": lambda: RecordFormat(
             "liar", (".txt",), random.choice([bool, gives]), gives
@@ -245,14 +240,14 @@ COMMANDS = {
 
 
 @shares
-def test_plugins(long: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_plugins(long, monkeypatch):
     """Whatever they give, raise or end is told as theirs, or has come to a result."""
     Path("base.yaml").write_text(BASE, encoding="utf-8")
     study = f"rps: 1\nbase: base.yaml\nrecords: ['{LIAR}']\nreports: [liar]\n"
     Path("study.yaml").write_text(study, encoding="utf-8")
     Path("made.txt").write_text("0.1\n-0.2\n0.1\n", encoding="utf-8")
 
-    def trial(random: Random) -> str:
+    def trial(random):
         kind = random.choice([*COMMANDS])
 
         output = ("-o", "out", "--force")
@@ -284,14 +279,14 @@ vary:
 """
 
 
-def sweep(*arguments: str) -> Result:
+def sweep(*arguments):
     return CliRunner().invoke(program, ["sweep", *arguments, "--quiet", "--jobs", "1"])
 
 
 DAMAGES = ["bit", "bit", "digit", "digit", "noise", "nothing", "end", "more", "pages"]
 
 
-def damage(data: bytearray, random: Random, kinds: list[str]) -> None:
+def damage(data, random, kinds):
     """Damage of a binary file, more often in what is written than in what SQLite keeps free."""
     kind, place = random.choice(kinds), random.randrange(len(data))
     while not data[place] and random.random() >= 0.2:
@@ -319,14 +314,14 @@ def damage(data: bytearray, random: Random, kinds: list[str]) -> None:
 
 
 @shares
-def test_damaged_stores(long: bool) -> None:
+def test_damaged_stores(long):
     """The same bytes at the end, or a way to them."""
     Path("base.yaml").write_text(BASE, encoding="utf-8")
     Path("modal.yaml").write_text(MODAL, encoding="utf-8")
     assert sweep("modal.yaml", "-o", "sound").exit_code == 0
     table = Path("sound/points.csv").read_bytes()
 
-    def trial(random: Random) -> str:
+    def trial(random):
         shutil.rmtree("copy", ignore_errors=True)
         shutil.copytree("sound", "copy")
         data = bytearray(Path("copy", FILE).read_bytes())
@@ -358,7 +353,7 @@ def test_damaged_stores(long: bool) -> None:
 
 @pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
 @shares
-def test_killed_studies(long: bool) -> None:
+def test_killed_studies(long):
     Path("base.yaml").write_text(BASE, encoding="utf-8")
     Path("study.yaml").write_text(STUDY, encoding="utf-8")
     begin = time.perf_counter()
@@ -366,7 +361,7 @@ def test_killed_studies(long: bool) -> None:
     takes = time.perf_counter() - begin
     table = Path("calm/points.csv").read_bytes()
 
-    def trial(random: Random) -> str:
+    def trial(random):
         shutil.rmtree("hasty", ignore_errors=True)
         kills = random.choice([1, 1, 2, 3])
         for _ in range(kills):
@@ -393,14 +388,14 @@ def four(x: float) -> float:
 
 
 @shares
-def test_caches(long: bool) -> None:
+def test_caches(long):
     """Machine code that is not what was written is compiled anew, and is then whole."""
     program = Program()
     program.add(four, [DOUBLE], "@four")
     Path("cache").mkdir()
     store, file = Kept(Path("cache")), Path("cache/four.o")
 
-    def trial(random: Random) -> str:
+    def trial(random):
         code = store.get(file.name, program.text)
         data = bytearray(file.read_bytes())
         damage(data, random, DAMAGES[:-1])

@@ -1,11 +1,7 @@
 """Cases, studies and records that were damaged: each is read, or refused in plain words."""
 
-from __future__ import annotations
-
 import os
-from collections.abc import Callable
 from pathlib import Path
-from random import Random
 
 import pytest
 from small_records import cosmos, csmip, esm, geonet, knet, smc
@@ -62,7 +58,7 @@ COLUMNS = "Time (s)  Acceleration (m/s2)\n" + "\n".join(
 )
 
 
-def written(name: str, text: str, random: Random) -> str:
+def written(name, text, random):
     """Write a text in some encoding; what can be read of it again."""
     encoding = random.choice(["utf-8", "utf-8", "utf-8", "latin-1", "utf-16"])
     data = text.encode(encoding, "replace")
@@ -73,7 +69,7 @@ def written(name: str, text: str, random: Random) -> str:
 
 
 @hunted("cases", 60, 8000)
-def test_cases(random: Random) -> str:
+def test_cases(random):
     text = mutated(random.choice(CASE_TEXTS), random)
     text += written("case.yaml", text, random)
     command = random.choice(["check", "check", "check", "modal"])
@@ -84,7 +80,7 @@ def test_cases(random: Random) -> str:
 
 
 @hunted("values of cases", 60, 5000)
-def test_values_of_cases(random: Random) -> str:
+def test_values_of_cases(random):
     text = random.choice(CASE_TEXTS)
     Path("case.yaml").write_text(text, encoding="utf-8")
     changes = [
@@ -98,7 +94,7 @@ def test_values_of_cases(random: Random) -> str:
 
 
 @hunted("devices", 40, 3000)
-def test_devices(random: Random) -> str:
+def test_devices(random):
     Path("case.yaml").write_text(random.choice(CASE_TEXTS), encoding="utf-8")
     devices = []
     for _ in range(random.choice([1, 1, 2])):
@@ -113,7 +109,7 @@ def test_devices(random: Random) -> str:
 
 
 @shares
-def test_contact(long: bool) -> None:
+def test_contact(long):
     """Compliant ends: each kind with sizes, right and wrong, below other laws and devices."""
     sizes = {"period_ratio": ("1.2", "1.01"), "stiffness": ("60 MN/m", "9 kN/mm"),
              "settlement": ("0.05 mm", "5 mm"), "damping": ("0", "0.1")}  # fmt: skip
@@ -121,7 +117,7 @@ def test_contact(long: bool) -> None:
         (CASES / "measured_period.yaml").read_text(encoding="utf-8").split("record:")[0]
     )
 
-    def trial(random: Random) -> str:
+    def trial(random):
         text = random.choice([soft, soft, soft, *CASE_TEXTS])
         Path("case.yaml").write_text(text, encoding="utf-8")
         kind = random.choice([*["plane", "edges"] * len(VALUES), "rigid", *VALUES])
@@ -148,7 +144,7 @@ NAMES += ["&factor=2", "x:"]
 
 
 @hunted("names", 40, 1000)
-def test_names(random: Random) -> str:
+def test_names(random):
     folder = Path(f"f{random.randrange(10**9)}")
     folder.mkdir()
     name = "".join(random.choice(NAMES) for _ in range(random.randrange(1, 4))) + ".at2"
@@ -159,23 +155,23 @@ def test_names(random: Random) -> str:
 
 
 @hunted("studies", 12, 1200)
-def test_studies(random: Random) -> str:
+def test_studies(random):
     written("study.yaml", mutated(random.choice(STUDY_TEXTS), random), random)
     return judged("sweep", "study.yaml", "--dry-run", places=("study.yaml", ".yaml:"))
 
 
 @hunted("values of studies", 12, 500)
-def test_values_of_studies(random: Random) -> str:
+def test_values_of_studies(random):
     Path("study.yaml").write_text(random.choice(STUDY_TEXTS), encoding="utf-8")
     change = f"{random.choice([*STUDY_KEYS, *CASE_KEYS])}={random.choice(VALUES)}"
     return judged("sweep", "study.yaml", "--dry-run", "--set", change)
 
 
-def at2() -> str:
+def at2():
     return at2_text(load_record("synthetic:?pga=0.3g&seed=1&duration=2&dt=0.02"))
 
 
-LAYOUTS: dict[str, Callable[[], str]] = {
+LAYOUTS = {
     "rec.AT2": at2,
     "rec.v1": cosmos,
     "rec.V2": csmip,
@@ -205,7 +201,7 @@ OPTIONS += [
 ]
 
 
-def judged_record(name: str, text: str, random: Random) -> str:
+def judged_record(name, text, random):
     written(name, text, random)
     source = name + random.choice(OPTIONS)
     return judged("record", "info", source, "--json", places=(name,))
@@ -213,17 +209,17 @@ def judged_record(name: str, text: str, random: Random) -> str:
 
 @shares
 @pytest.mark.parametrize("name", LAYOUTS)
-def test_records(name: str, long: bool) -> None:
+def test_records(name, long):
     text = LAYOUTS[name]()
 
-    def trial(random: Random) -> str:
+    def trial(random):
         return judged_record(name, mutated(text, random), random)
 
     hunt(f"records {name}", trial, 20, 700 if long else None)
 
 
 @shares
-def test_records_of_the_agencies(long: bool, records_folder: Path) -> None:
+def test_records_of_the_agencies(long, records_folder):
     files = [
         path
         for path in sorted((records_folder / "formats").iterdir())
@@ -231,7 +227,7 @@ def test_records_of_the_agencies(long: bool, records_folder: Path) -> None:
     ]
     texts = {path.name: path.read_text(encoding="latin-1") for path in files}
 
-    def trial(random: Random) -> str:
+    def trial(random):
         name = random.choice(sorted(texts))
         return judged_record(name, mutated(texts[name], random), random)
 
@@ -239,7 +235,7 @@ def test_records_of_the_agencies(long: bool, records_folder: Path) -> None:
 
 
 @hunted("folders of records", 6, 300)
-def test_folders_of_records(random: Random) -> str:
+def test_folders_of_records(random):
     """Of a study: what is no record is left out, and none hangs."""
     folder = Path(f"folder{random.random()}")
     folder.mkdir()
@@ -258,13 +254,13 @@ PATHS = [
 
 
 @shares
-def test_paths(long: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_paths(long, monkeypatch):
     monkeypatch.setattr("rpscli.case.text.files._PATIENCE", 0.01)
     Path("case.yaml").write_text(CASE_TEXTS[0], encoding="utf-8")
     os.mkfifo("fifo")
     Path("loop").symlink_to("loop")
 
-    def trial(random: Random) -> str:
+    def trial(random):
         path = random.choice(PATHS)
         Path("study.yaml").write_text("rps: 1\nbase: case.yaml\n", encoding="utf-8")
         Path("other.yaml").write_text(

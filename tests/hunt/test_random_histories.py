@@ -4,16 +4,12 @@ Far beyond what anybody builds: undamped and overdamped, of stiff storeys and of
 seconds, on columns of a hand and of a house, under ground that falls faster than gravity.
 """
 
-from __future__ import annotations
-
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from random import Random
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from paper_structures import (
     FLAT,
     building,
@@ -30,10 +26,9 @@ from rpscli.analyses.kernels.systems import (
     most_seconds,
     steps_a_second,
 )
-from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.analyses.timehistory import denser_trace, time_history
-from rpscli.analyses.trace import ENERGIES, Trace
+from rpscli.analyses.trace import ENERGIES
 from rpscli.model.bearing import Bearing
 from rpscli.model.contact import Contact
 from rpscli.model.devices import (
@@ -44,14 +39,14 @@ from rpscli.model.devices import (
     ViscousDamper,
 )
 from rpscli.model.impact import ImpactLaw
-from rpscli.model.podium import Device, PodiumStructure
+from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import (
     ModalDamping,
     RayleighDamping,
     Superstructure,
     profile_stiffnesses,
 )
-from rpscli.records.ground_motion import GroundMotion, MotionComponents
+from rpscli.records.ground_motion import MotionComponents
 
 pytestmark = [
     pytest.mark.posix,
@@ -79,11 +74,11 @@ MOST_STEPS = 300_000
 """Of a history, some seconds; longer ones are followed for a shorter time after the record."""
 
 
-def logarithmic(random: Random, low: float, high: float) -> float:
+def logarithmic(random, low, high):
     return math.exp(random.uniform(math.log(low), math.log(high)))
 
 
-def random_building(random: Random) -> Superstructure | None:
+def random_building(random):
     n = random.choice([0, 1, 1, 2, 2, 3, 3, 4, 6, 9, 15, 25, 33, 60])
     if not n:
         return None
@@ -105,7 +100,7 @@ def random_building(random: Random) -> Superstructure | None:
     )
 
 
-def structure(random: Random) -> PodiumStructure:
+def structure(random):
     slope = logarithmic(random, 0.03, 0.8)
     rho = random.choice([0.0, 0.0, 0.25, 0.5, 0.5, 1.0, random.uniform(0.0, 2.0)])
     bearing = Bearing(
@@ -128,11 +123,11 @@ def structure(random: Random) -> PodiumStructure:
     )
 
 
-def structure_on_a_bed(random: Random) -> PodiumStructure:
+def structure_on_a_bed(random):
     """Compliant ends, from hardly to barely holding the weight; perhaps with dampers."""
     system = structure(random)
     kind = random.choice(["plane", "plane", "edges"])
-    sizes: dict[str, float] = {}
+    sizes = {}
     ways = ["stiffness", *(["settlement"] if system.bearing.is_flat else [])]
     way = random.choice([*ways, *(["period_ratio"] * 3 if system.storeys else [])])
     if way == "period_ratio":
@@ -144,25 +139,25 @@ def structure_on_a_bed(random: Random) -> PodiumStructure:
             system.weight / system.bearing.semi_diagonal * logarithmic(random, 3.0, 1e5)
         )
     damping = random.choice([0.0, 0.03, 0.03, logarithmic(random, 1e-3, 1.0)])
-    devices: tuple[Device, ...] = random.choice(
+    devices = random.choice(
         [(), (), (FrictionDamper(0.3 * random.random() * system.uplift_force),)]
     )
     return replace(
         system,
         impact_law=ImpactLaw("flexible", loss=random.choice([0.0, 0.3, 1.0])),
-        contact=Contact(kind, damping=damping, **sizes),  # type: ignore[arg-type]
+        contact=Contact(kind, damping=damping, **sizes),
         devices=devices,
     )
 
 
-def device(random: Random, system: PodiumStructure) -> Device:
+def device(random, system):
     """One that matters, of any kind."""
     force, width = system.uplift_force, system.bearing.half_width
     part, choice = random.uniform(0.05, 0.6), random.choice
     weight = system.weight / system.columns
     exponent = choice([1.0, 0.2, 0.5, 1.5, 2.0])
     prestress = 0.2 * part * weight
-    kinds: list[Device] = [
+    kinds = [
         ViscousDamper(part * force / 0.3**exponent, exponent),
         FrictionDamper(2.0 * part * force),
         Stop(choice([0.0, 0.02, 0.1]), 20.0 * part * force, choice([0.0, part * force])),
@@ -174,7 +169,7 @@ def device(random: Random, system: PodiumStructure) -> Device:
     return choice(kinds)
 
 
-def structure_with_devices(random: Random) -> PodiumStructure:
+def structure_with_devices(random):
     """Of a usual size, with one to four devices on six columns."""
     storeys, rho = random.choice([0, 1, 3, 6]), random.choice([FLAT, 0.3, 0.5, 1.0])
     law = ImpactLaw(random.choice(["rigid", "flexible"]))
@@ -188,7 +183,7 @@ def structure_with_devices(random: Random) -> PodiumStructure:
     return replace(bare, devices=devices)
 
 
-def spherical_structure(random: Random) -> PodiumStructure:
+def spherical_structure(random):
     """Without a flat part, with all but tendons."""
     system = structure_with_devices(random)
     bearing = Bearing(system.bearing.semi_diagonal, 0.0, 0.3, random.uniform(0.51, 2.0))
@@ -196,7 +191,7 @@ def spherical_structure(random: Random) -> PodiumStructure:
     return replace(system, bearing=bearing, impact_law=ImpactLaw(), devices=devices)
 
 
-def samples(random: Random, peak: float) -> NDArray[np.float64]:
+def samples(random, peak):
     noise = np.random.default_rng(random.randrange(2**32))
     count = random.randrange(2, 500)
     time = np.arange(count)
@@ -219,7 +214,7 @@ def samples(random: Random, peak: float) -> NDArray[np.float64]:
     return peak * shape / max(float(np.max(np.abs(shape))), 1e-12)
 
 
-def motions(random: Random) -> tuple[GroundMotion, GroundMotion | None]:
+def motions(random):
     dt = random.choice([0.002, 0.005, 0.01, 0.01, 0.02, 0.05])
     along = samples(random, 9.81 * logarithmic(random, 0.02, 3.0))
     record = ground(along, dt)
@@ -229,9 +224,7 @@ def motions(random: Random) -> tuple[GroundMotion, GroundMotion | None]:
     return record, ground(up, dt)
 
 
-def settings(
-    random: Random, system: PodiumStructure, record: GroundMotion
-) -> TimeHistorySettings:
+def settings(random, system, record):
     largest = 0.999 * system.bearing.largest_rotation / system.critical_rotation
     start = 0.0
     if random.random() < 0.15:
@@ -251,13 +244,13 @@ def settings(
     )
 
 
-def residual(result: TimeHistoryResult) -> float:
+def residual(result):
     """The error of the audit over the largest of its entries at any sample.
 
     At the end the ground may have taken back most of what it gave.
     """
 
-    def error(trace: Trace) -> float:
+    def error(trace):
         entries = (getattr(trace, name) for name in (*ENERGIES, "energy_damped_vertical"))
         largest = max(float(np.max(np.abs(entry))) for entry in entries)
         return abs(result.energy.residual) / largest if largest > 0.0 else 0.0
@@ -271,21 +264,19 @@ def residual(result: TimeHistoryResult) -> float:
     )
 
 
-def nothing_pushed(motion: MotionComponents, result: TimeHistoryResult) -> bool:
+def nothing_pushed(motion, result):
     """Whether the structure uplifted before the ground moved sideways."""
     uplift = result.events[0].time if result.events else result.duration
     sideways = [each for each in (motion.horizontal, motion.y) if each is not None]
     return not any(a.acceleration[: math.ceil(uplift / a.dt) + 1].any() for a in sideways)
 
 
-def shaking(
-    random: Random, system: PodiumStructure, *, pairs: bool
-) -> tuple[MotionComponents, TimeHistorySettings]:
+def shaking(random, system, *, pairs):
     """A random motion, and settings for it."""
     record, vertical = motions(random)
-    across: GroundMotion | None = None
+    across = None
 
-    def as_long(values: NDArray[np.float64]) -> GroundMotion:
+    def as_long(values):
         return ground(np.pad(values, (0, record.npts))[: record.npts], record.dt)
 
     if pairs:
@@ -302,17 +293,12 @@ def shaking(
     return MotionComponents(record, vertical, y=across), chosen
 
 
-def opposite(motion: MotionComponents) -> MotionComponents:
+def opposite(motion):
     across = None if motion.y is None else motion.y.scaled(-1.0)
     return MotionComponents(motion.horizontal.scaled(-1.0), motion.vertical, y=across)
 
 
-def judged_history(
-    random: Random,
-    draw: Callable[[Random], PodiumStructure] = structure,
-    *,
-    pairs: bool = False,
-) -> str:
+def judged_history(random, draw=structure, *, pairs=False):
     """An outcome, the energy, and the history under the opposite motion."""
     try:
         system = draw(random)
@@ -367,7 +353,7 @@ def judged_history(
     return here.outcome
 
 
-def structure_of_a_pair(random: Random) -> PodiumStructure:
+def structure_of_a_pair(random):
     """With passes of 0 to 20 ms of contact, perhaps other columns in spin, or stiffnesses in y."""
     system = structure(random)
     law = ImpactLaw(
@@ -383,7 +369,7 @@ def structure_of_a_pair(random: Random) -> PodiumStructure:
     return replace(perhaps_other_across(random, system), impact_law=law)
 
 
-def perhaps_other_across(random: Random, system: PodiumStructure) -> PodiumStructure:
+def perhaps_other_across(random, system):
     """Perhaps with other stiffnesses in y."""
     above = system.superstructure
     if above is None or random.random() >= 0.4:
@@ -392,7 +378,7 @@ def perhaps_other_across(random: Random, system: PodiumStructure) -> PodiumStruc
     return replace(system, superstructure_y=other)
 
 
-def smooth_structure_of_a_pair(random: Random) -> PodiumStructure:
+def smooth_structure_of_a_pair(random):
     """On compliant or spherical ends, or with friction on rigid ones; perhaps softer in y."""
     kind = random.choice(["bed", "bed", "spherical", "spherical", "rigid"])
     system = structure_on_a_bed(random) if kind == "bed" else structure_of_a_pair(random)
@@ -411,9 +397,7 @@ def smooth_structure_of_a_pair(random: Random) -> PodiumStructure:
     return perhaps_other_across(random, system)
 
 
-def with_floors_of_its_own(
-    random: Random, draw: Callable[[Random], PodiumStructure]
-) -> PodiumStructure:
+def with_floors_of_its_own(random, draw):
     """Floors on vertical springs, storeys that yield, or both."""
     system, kind = draw(random), random.choice(["springs", "springs", "yields", "both"])
     if (above := system.superstructure) is None:
@@ -445,7 +429,7 @@ LOST_TOO_MUCH = [
 
 @needs_compiled_kernels
 @pytest.mark.parametrize("seed", LOST_TOO_MUCH)
-def test_histories_that_lost_too_much(seed: str) -> None:
+def test_histories_that_lost_too_much(seed):
     # at coarser steps, also of one storey and of one damped by 90 %; where the last term happened
     # to be small; and the last mode of sixty storeys has no mass that could lose any
     draw = structure_with_devices if "devices" in seed else structure
@@ -455,36 +439,36 @@ def test_histories_that_lost_too_much(seed: str) -> None:
 @needs_compiled_kernels
 @shares
 @pytest.mark.parametrize("part", range(4))
-def test_histories(part: int, long: bool) -> None:
+def test_histories(part, long):
     hunt(f"histories {part}", judged_history, 3, 1000 if long else None)
 
 
 @needs_compiled_kernels
 @hunted("devices", 30, 1000)
-def test_devices(random: Random) -> str:
+def test_devices(random):
     return judged_history(random, structure_with_devices)
 
 
 @needs_compiled_kernels
 @hunted("spherical ends", 30, 1000)
-def test_spherical_ends(random: Random) -> str:
+def test_spherical_ends(random):
     return judged_history(random, spherical_structure)
 
 
 @needs_compiled_kernels
 @hunted("compliant ends", 6, 1000)
-def test_ends_that_give_way(random: Random) -> str:
+def test_ends_that_give_way(random):
     return judged_history(random, structure_on_a_bed)
 
 
 @needs_compiled_kernels
 @hunted("pairs", 4, 1000)
-def test_pairs(random: Random) -> str:
+def test_pairs(random):
     return judged_history(random, structure_of_a_pair, pairs=True)
 
 
 @needs_compiled_kernels
-def test_friction_that_hardly_slides_takes_few_steps() -> None:
+def test_friction_that_hardly_slides_takes_few_steps():
     """Errors of a third of the velocity at which it stops had 2.1 million of 60,000 taken."""
     draw = Random("271305-pairs on every end-194")  # noqa: S311 -- no secret
     system = smooth_structure_of_a_pair(draw)
@@ -494,7 +478,7 @@ def test_friction_that_hardly_slides_takes_few_steps() -> None:
 
 
 @needs_compiled_kernels
-def test_large_plastic_drifts_take_few_steps() -> None:
+def test_large_plastic_drifts_take_few_steps():
     """Rounding of what they take from the base shear had 394,000 of 21,000 steps taken."""
     draw = Random("271702-floors of their own-13")  # noqa: S311 -- no secret
     system = with_floors_of_its_own(
@@ -509,7 +493,7 @@ def test_large_plastic_drifts_take_few_steps() -> None:
 
 
 @needs_compiled_kernels
-def test_a_pass_that_ends_a_yield_happens_once() -> None:
+def test_a_pass_that_ends_a_yield_happens_once():
     """It began anew, below its range by rounding, and lost 4e-5 of the energy without an entry."""
     draw = Random("271801-pairs under floors of their own-134")  # noqa: S311 -- no secret
     kind = draw.choice([structure_of_a_pair, smooth_structure_of_a_pair])
@@ -530,19 +514,19 @@ def test_a_pass_that_ends_a_yield_happens_once() -> None:
 
 @needs_compiled_kernels
 @hunted("pairs on every end", 6, 1000)
-def test_pairs_on_every_end(random: Random) -> str:
+def test_pairs_on_every_end(random):
     return judged_history(random, smooth_structure_of_a_pair, pairs=True)
 
 
 @needs_compiled_kernels
 @hunted("floors of their own", 8, 1000)
-def test_floors_of_their_own(random: Random) -> str:
+def test_floors_of_their_own(random):
     draw = random.choice([structure, structure, structure_on_a_bed])
     return judged_history(random, lambda of: with_floors_of_its_own(of, draw))
 
 
 @needs_compiled_kernels
 @hunted("pairs under floors of their own", 8, 1000)
-def test_pairs_under_floors_of_their_own(random: Random) -> str:
+def test_pairs_under_floors_of_their_own(random):
     draw = random.choice([structure_of_a_pair, smooth_structure_of_a_pair])
     return judged_history(random, lambda of: with_floors_of_its_own(of, draw), pairs=True)

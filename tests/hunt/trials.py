@@ -5,22 +5,18 @@ Each trial draws from its own seed, so that one that fails is repeated by its nu
 `RPS_HUNT_TABLE` names a file to which each hunt adds a row after so many trials.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import re
 import signal
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from random import Random
-from types import FrameType
 
 import pytest
-from click.testing import CliRunner, Result
+from click.testing import CliRunner
 
 from rpscli.cli import program
 
@@ -46,20 +42,17 @@ class TooSlow(BaseException):
     """A trial that is not over in time; no part of the program may take it for its own error."""
 
 
-Trial = Callable[[Random], str]
-"""What one trial does with its random numbers; the result says how it ended, for the table."""
-
 shares = pytest.mark.parametrize(
     "long", [False, pytest.param(True, marks=pytest.mark.long)], ids=["quick", "long"]
 )
 
 
-def hunt(name: str, trial: Trial, quick: int, long: int | None = None) -> None:
+def hunt(name, trial, quick, long=None):
     """Run trials of a kind, `long` if given in place of `quick`; failures by their numbers."""
     count = quick if long is None else round(long * TIMES)
     seed = SEED if long is not None else "1"
-    ends: Counter[str] = Counter()
-    failures: list[str] = []
+    ends = Counter()
+    failures = []
     slowest = 0.0
     for number in range(count):
         begin = time.process_time()
@@ -89,12 +82,12 @@ def hunt(name: str, trial: Trial, quick: int, long: int | None = None) -> None:
     assert not failures, f"{len(failures)} of {count}:\n" + "\n".join(failures[:20])
 
 
-def hunted(name: str, quick: int, many: int) -> Callable[[Trial], Callable[[bool], None]]:
+def hunted(name, quick, many):
     """A trial as two tests: so many in every run, and `many` on demand."""
 
-    def tests_of(trial: Trial) -> Callable[[bool], None]:
+    def tests_of(trial):
         @shares
-        def test(long: bool) -> None:
+        def test(long):
             hunt(name, trial, quick, many if long else None)
 
         return test
@@ -103,10 +96,10 @@ def hunted(name: str, quick: int, many: int) -> Callable[[Trial], Callable[[bool
 
 
 @contextmanager
-def time_limit(seconds: float) -> Iterator[None]:
+def time_limit(seconds):
     """An error after so many seconds of computing, wherever Python is."""
 
-    def over(number: int, frame: FrameType | None) -> None:
+    def over(number, frame):
         raise TooSlow(f"not over after {seconds:g} s")
 
     timers = {signal.ITIMER_PROF: signal.SIGPROF, signal.ITIMER_REAL: signal.SIGALRM}
@@ -121,12 +114,7 @@ def time_limit(seconds: float) -> Iterator[None]:
             signal.signal(number, before[number])
 
 
-def judged(
-    *arguments: str,
-    places: tuple[str, ...] = (),
-    text: str = "",
-    codes: frozenset[int] = PROMISED,
-) -> str:
+def judged(*arguments, places=(), text="", codes=PROMISED):
     """Run `rps`; its exit code and messages must be as promised.
 
     The first line of a refusal names one of `places`, or begins with what stands in `text`.
@@ -144,9 +132,7 @@ def judged(
     return f"exit {result.exit_code}"
 
 
-def _judge_message(
-    result: Result, places: tuple[str, ...], text: str, shown: str
-) -> None:
+def _judge_message(result, places, text, shown):
     lines = [line for line in result.stderr.splitlines() if line.startswith("error: ")]
     assert lines, f"no message: {shown}"
     assert len(lines) <= 101, f"{len(lines)} lines: {shown}"
@@ -162,7 +148,7 @@ def _judge_message(
     assert all(len(line.split()) >= 5 for line in lines), f"no rule: {shown}"
 
 
-def _no_json(constant: str) -> None:
+def _no_json(constant):
     raise AssertionError(f"{constant} is no JSON")
 
 
@@ -182,14 +168,14 @@ PIECES = [
 ]  # fmt: skip
 
 
-def mutated(text: str, random: Random) -> str:
+def mutated(text, random):
     """The text after one to four damages."""
     for _ in range(random.choice([1, 1, 1, 2, 4])):
         text = random.choice(DAMAGES)(text, random)
     return text
 
 
-def _number(text: str, random: Random) -> str:
+def _number(text, random):
     found = list(NUMBER.finditer(text))
     if not found:
         return text
@@ -198,7 +184,7 @@ def _number(text: str, random: Random) -> str:
     return text[: match.start()] + random.choice(NUMBERS) + text[match.end() :]
 
 
-def _scaled_number(text: str, random: Random) -> str:
+def _scaled_number(text, random):
     found = list(NUMBER.finditer(text))[:60]
     if not found:
         return text
@@ -208,10 +194,8 @@ def _scaled_number(text: str, random: Random) -> str:
     return f"{text[: match.start()]}{value:g}{text[match.end() :]}"
 
 
-def _lines(
-    change: Callable[[list[str], int, Random], list[str]],
-) -> Callable[[str, Random], str]:
-    def damage(text: str, random: Random) -> str:
+def _lines(change):
+    def damage(text, random):
         lines = text.split("\n")
         place = random.randrange(
             min(len(lines), 60) if random.random() < 0.7 else len(lines)
@@ -221,18 +205,18 @@ def _lines(
     return damage
 
 
-def _swapped(lines: list[str], i: int, random: Random) -> list[str]:
+def _swapped(lines, i, random):
     j = random.randrange(len(lines))
     lines[i], lines[j] = lines[j], lines[i]
     return lines
 
 
-def _indented(lines: list[str], i: int, random: Random) -> list[str]:
+def _indented(lines, i, random):
     lines[i] = random.choice(["", " ", "  ", "\t", "        "]) + lines[i].lstrip()
     return lines
 
 
-def _letter(text: str, random: Random) -> str:
+def _letter(text, random):
     if not text:
         return text
     place = random.randrange(min(len(text), 2000) if random.random() < 0.7 else len(text))
@@ -240,12 +224,12 @@ def _letter(text: str, random: Random) -> str:
     return text[:place] + letter + text[place + random.randrange(2) :]
 
 
-def _piece(text: str, random: Random) -> str:
+def _piece(text, random):
     place = random.randrange(min(len(text), 2000) + 1)
     return text[:place] + random.choice(PIECES) + text[place:]
 
 
-def _word(text: str, random: Random) -> str:
+def _word(text, random):
     words = list(re.finditer(r"\w+", text[:4000]))
     if not words:
         return text
@@ -253,7 +237,7 @@ def _word(text: str, random: Random) -> str:
     return text[: here.start()] + other[0] + text[here.end() :]
 
 
-DAMAGES: list[Callable[[str, Random], str]] = [
+DAMAGES = [
     _number,
     _number,
     _scaled_number,

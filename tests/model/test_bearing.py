@@ -1,7 +1,5 @@
 """One bearing: the published table of geometry, the limit rho_cr, and shapes that are refused."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -34,7 +32,7 @@ GEOMETRIES = [
 ]
 
 
-def test_the_printed_digits_are_those_of_the_verification() -> None:
+def test_the_printed_digits_are_those_of_the_verification():
     shown = table(VERIFICATION, "Geometry for `R = 1.5 m`")[1:]
     digits = {str(number) for row in GEOMETRIES for number in row[2 if row[1] else 4 :]}
     numbers = {
@@ -43,7 +41,7 @@ def test_the_printed_digits_are_those_of_the_verification() -> None:
     assert numbers == {number.removeprefix("0") for number in digits} | {"0", "alpha"}
 
 
-def printed(digits: str, units: float = 0.5) -> object:
+def printed(digits, units=0.5):
     """A printed number, within half of its last digit, or so many of them."""
     return pytest.approx(
         float(digits), abs=units * 10.0 ** -len(digits.partition(".")[2])
@@ -54,9 +52,7 @@ def printed(digits: str, units: float = 0.5) -> object:
 @pytest.mark.parametrize(
     ("tan", "rho", "beta", "critical", "displacement", "lift"), GEOMETRIES
 )
-def test_table_of_geometry(
-    tan: float, rho: float, beta: str, critical: str, displacement: str, lift: str
-) -> None:
+def test_table_of_geometry(tan, rho, beta, critical, displacement, lift):
     bearing = Bearing(1.5, tan, 2.0 * tan, rho)
     _, u, v = PodiumStructure(bearing, 2e4, 2e5).path(
         np.array([bearing.critical_rotation])
@@ -74,12 +70,10 @@ widenings = st.floats(1.02, 2.9)
 
 @pytest.mark.evidence("geometry of columns", "exact")
 @given(slopes, widenings)
-def test_the_exact_limit_of_overturning_while_rolling(
-    tan_alpha: float, widening: float
-) -> None:
+def test_the_exact_limit_of_overturning_while_rolling(tan_alpha, widening):
     rise = tan_alpha * (widening - 1.0)
 
-    def excess(rho: float) -> float:
+    def excess(rho):
         """tan(beta) (1 - 2 rho) - tan(alpha), multiplied out by cos(beta)."""
         return rise / (2.0 * rho) * (1.0 - 2.0 * rho) - tan_alpha * math.sqrt(
             1.0 - min(rise / (2.0 * rho), 1.0) ** 2
@@ -107,14 +101,14 @@ def test_the_exact_limit_of_overturning_while_rolling(
 @pytest.mark.parametrize(
     ("tan_alpha", "exact"), [(0.10, 0.2525), (0.15, 0.2556), (0.20, 0.2600)]
 )
-def test_exact_limits_that_the_theory_prints(tan_alpha: float, exact: float) -> None:
+def test_exact_limits_that_the_theory_prints(tan_alpha, exact):
     bearing = Bearing(1.5, tan_alpha, 2.0 * tan_alpha, 0.5)
     assert bearing.critical_curvature_ratio == pytest.approx(exact, abs=5e-5)
     assert bearing.critical_curvature_ratio_of_paper == pytest.approx(0.25, abs=1e-15)
 
 
 @given(slopes, st.floats(0.3, 5.0), st.sampled_from([FLAT, 0.5, 2.0]))
-def test_sizes_fit_together(tan_alpha: float, size: float, rho: float) -> None:
+def test_sizes_fit_together(tan_alpha, size, rho):
     bearing = Bearing(size, tan_alpha, 1.5 * tan_alpha, rho)
     H, B = bearing.half_height, bearing.half_width
     assert math.hypot(H, B) == pytest.approx(size, rel=1e-14)
@@ -128,7 +122,7 @@ def test_sizes_fit_together(tan_alpha: float, size: float, rho: float) -> None:
         assert bearing.alpha_wedge == bearing.alpha
 
 
-def test_an_arc_of_no_width_is_a_flat_end() -> None:
+def test_an_arc_of_no_width_is_a_flat_end():
     """tan alpha' = tan alpha with a radius: the column never rolls."""
     without, flat = Bearing(1.5, 0.15, 0.15, 0.5), Bearing(1.5, 0.15, 0.15, FLAT)
     assert without.is_flat
@@ -160,18 +154,14 @@ def test_an_arc_of_no_width_is_a_flat_end() -> None:
         ({"inertia_ratio_axial": 0.0}, "inertia_ratio_axial = 0.0 must be > 0"),
     ],
 )
-def test_shapes_that_cannot_be_built_are_refused(
-    changes: dict[str, float], said: str
-) -> None:
+def test_shapes_that_cannot_be_built_are_refused(changes, said):
     with pytest.raises(ValueError, match=said):
         replace(Bearing(1.5, 0.15, 0.30, 0.5, 4.0 / 3.0), **changes)
 
 
 @pytest.mark.parametrize("rho", [0.0, 0.08, 0.25, 0.5, 2.0])
 @pytest.mark.parametrize("slenderness", [0.05, 0.15, 0.7])
-def test_the_cap_beam_moves_on_until_the_model_ends(
-    rho: float, slenderness: float
-) -> None:
+def test_the_cap_beam_moves_on_until_the_model_ends(rho, slenderness):
     bearing = Bearing(1.5, slenderness, 1.15 * slenderness, rho)
     end = bearing.largest_rotation
     assert bearing.critical_rotation < end
@@ -182,7 +172,7 @@ def test_the_cap_beam_moves_on_until_the_model_ends(
 
 
 @pytest.mark.evidence("geometry of columns", "exact")
-def test_the_axial_inertia_is_that_of_a_solid_round_column() -> None:
+def test_the_axial_inertia_is_that_of_a_solid_round_column():
     """I_3 = m b^2/2 of a cylinder of half-width b, over m R^2."""
     arc, flat = Bearing(1.5, 0.15, 0.30, 0.5), Bearing(1.5, 0.15, 0.30, 0.0)
     half_width = arc.half_height * 0.30

@@ -1,7 +1,5 @@
 """Forces along one column and the pressure under its ends, against numbers of another program."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -41,7 +39,7 @@ ROUND = ColumnDesign("round", 35e9, 0.2, 25e6)
 SQUARE = ColumnDesign("square", 35e9, 0.2, 25e6, edge_length=0.45)
 
 
-def arcs(radius: float, width: float, wedge: float = 0.5) -> Bearing:
+def arcs(radius, width, wedge=0.5):
     """A column whose arcs have this radius, around a flat part of this half width."""
     H = radius / 1.2
     return Bearing(math.hypot(H, width), width / H, wedge / H, 0.6)
@@ -49,7 +47,7 @@ def arcs(radius: float, width: float, wedge: float = 0.5) -> Bearing:
 
 @pytest.mark.evidence("forces in columns, friction", "program")
 @pytest.mark.parametrize("number", range(3))
-def test_forces_along_a_column(number: int) -> None:
+def test_forces_along_a_column(number):
     (side, x, rate, F_b, N_b, F_t, N_t), *wanted = STATES[number]
     H, B, r, beta = 1.4834045, 0.22251068, 0.59336181, 0.38439677
     if number == 2:
@@ -74,13 +72,7 @@ def test_forces_along_a_column(number: int) -> None:
         (SQUARE, 525e3, (1.483, 3.71), 67563368.0, (0.010992985, math.inf)),
     ],
 )  # fmt: skip
-def test_pressure_on_points_and_lines(
-    design: ColumnDesign,
-    force: float,
-    radii: tuple[float, float],
-    largest: float,
-    widths: tuple[float, float],
-) -> None:
+def test_pressure_on_points_and_lines(design, force, radii, largest, widths):
     x = 0.02
     bearing = arcs(radii[0], (radii[1] - radii[0]) * math.sin(x))
     found = design.pressed(bearing, np.array(x), np.array(force))
@@ -90,7 +82,7 @@ def test_pressure_on_points_and_lines(
 
 
 @pytest.mark.evidence("forces in columns, friction", "exact")
-def test_an_ellipse_between_a_circle_and_a_line() -> None:
+def test_an_ellipse_between_a_circle_and_a_line():
     """p_0 of a sphere in closed form; of a long ellipse, a line's with the force of its middle."""
     N, r, E = np.array(525e3), 1.483, ROUND.contact_modulus
     largest, *_ = ROUND.pressed(arcs(r, 1e-12), np.array(0.1), N)
@@ -107,7 +99,7 @@ def test_an_ellipse_between_a_circle_and_a_line() -> None:
 
 
 @pytest.mark.evidence("forces in columns, friction", "program")
-def test_edges_that_crush() -> None:
+def test_edges_that_crush():
     flat = Bearing(math.hypot(1.5, 0.2225), 0.2225 / 1.5, 0.2225 / 1.5, 0.0)
     strip = replace(SQUARE, edge_length=0.445).crushed(flat, 525e3)
     assert strip == pytest.approx((0.047191011, 0.023595506), rel=1e-6)
@@ -120,7 +112,7 @@ def test_edges_that_crush() -> None:
     assert ROUND.crushed(flat, 2.0 * whole) == pytest.approx((0.89, 0.2225), rel=1e-12)
 
 
-def test_where_the_laws_of_pressure_end() -> None:
+def test_where_the_laws_of_pressure_end():
     curved, ball = Bearing(1.5, 0.15, 0.3, 0.5), arcs(1.483, 0.0)
     for design in (SQUARE, ROUND):
         assert "flat part" in design.doubt(curved, 0.001, 5e5)

@@ -1,7 +1,5 @@
 """Devices at rest against the second integrator's generalised forces and closed forms."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -21,14 +19,13 @@ from rpscli.model.devices import (
     Tendon,
     ViscousDamper,
 )
-from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.statics import device_consequences, returns, secant_period, uplift_force
 
 pytestmark = [
     pytest.mark.evidence("devices", "exact"),
     pytest.mark.evidence("devices", "program"),
 ]
-EQUIPMENT: tuple[Device, ...] = (
+EQUIPMENT = (
     FrictionDamper(1.2e5),
     RollingResistance(0.02),
     Stop(0.15, 2e6, 1e5),
@@ -39,12 +36,12 @@ EQUIPMENT: tuple[Device, ...] = (
 )
 
 
-def equipped(rho: float, *devices: Device, tan_alpha: float = 0.15) -> PodiumStructure:
+def equipped(rho, *devices, tan_alpha=0.15):
     return replace(podium(2, tan_alpha, rho), devices=devices, columns=6)
 
 
 @pytest.mark.parametrize("rho", [FLAT, 0.26, 0.5, 1.5])
-def test_both_branches_of_the_storey_curve(rho: float) -> None:
+def test_both_branches_of_the_storey_curve(rho):
     structure = equipped(rho, *EQUIPMENT)
     curve = pushover(structure, points=50).curve
     motion = StoreyLagrangian(oracle_system(structure))
@@ -70,7 +67,7 @@ def test_both_branches_of_the_storey_curve(rho: float) -> None:
 
 
 @pytest.mark.parametrize("rho", [FLAT, 0.5, 1.5])
-def test_uplift_force_and_the_stiffness_after_it(rho: float) -> None:
+def test_uplift_force_and_the_stiffness_after_it(rho):
     structure = equipped(rho, *EQUIPMENT)
     found = pushover(structure)
     bearing = structure.bearing
@@ -87,12 +84,12 @@ def test_uplift_force_and_the_stiffness_after_it(rho: float) -> None:
     )
 
 
-def test_without_devices_the_way_back_is_the_way_out() -> None:
+def test_without_devices_the_way_back_is_the_way_out():
     curve = pushover(podium(2, 0.15, 0.4)).curve
     assert np.array_equal(curve.force, curve.unloading_force)
 
 
-def test_a_slender_storey_recentres_below_its_constant_force() -> None:
+def test_a_slender_storey_recentres_below_its_constant_force():
     base = equipped(0.5, tan_alpha=1e-3)
     base = replace(base, bearing=replace(base.bearing, wedge_slenderness=0.5))
     constant = base.weight * 1e-3
@@ -110,7 +107,7 @@ def test_a_slender_storey_recentres_below_its_constant_force() -> None:
     ].recentres
 
 
-def test_consequences_by_hand() -> None:
+def test_consequences_by_hand():
     structure = equipped(
         FLAT, Stop(0.1, 1e6), Tendon(3e4, 5e5, 4e4), ViscousDamper(4e4, 2.0)
     )
@@ -136,7 +133,7 @@ def test_consequences_by_hand() -> None:
 
 
 @pytest.mark.parametrize("rolling", [True, False])
-def test_linearised_tendons_are_the_slope_of_their_moment(rolling: bool) -> None:
+def test_linearised_tendons_are_the_slope_of_their_moment(rolling):
     structure = equipped(0.7, Tendon(3e4, 5e5), tan_alpha=1e-3)
     structure = replace(
         structure, bearing=replace(structure.bearing, wedge_slenderness=2e-3)
@@ -162,10 +159,8 @@ def test_linearised_tendons_are_the_slope_of_their_moment(rolling: bool) -> None
 
 @pytest.mark.parametrize("c", [0.0, 2e5, 3e6])
 @pytest.mark.parametrize("stiffness", [0.0, 3e7])
-def test_the_own_mode_of_a_rigid_frame_with_damper_and_tendons(
-    c: float, stiffness: float
-) -> None:
-    devices: tuple[Device, ...] = (FrictionDamper(1e4),)
+def test_the_own_mode_of_a_rigid_frame_with_damper_and_tendons(c, stiffness):
+    devices = (FrictionDamper(1e4),)
     devices += (ViscousDamper(c),) if c else ()
     devices += (Tendon(0.0, stiffness),) if stiffness else ()
     structure = replace(podium(0, 0.15, 0.4), devices=devices, columns=6)
@@ -187,7 +182,7 @@ def test_the_own_mode_of_a_rigid_frame_with_damper_and_tendons(
 
 
 @pytest.mark.parametrize("c", [2e5, 5e6])
-def test_a_damper_leaves_each_building_mode_a_pair(c: float) -> None:
+def test_a_damper_leaves_each_building_mode_a_pair(c):
     structure = equipped(0.4, ViscousDamper(c))
     for modes in modal(structure).uplifted.values():
         growing, partner = modes.eigenvalues[:2]
@@ -197,7 +192,7 @@ def test_a_damper_leaves_each_building_mode_a_pair(c: float) -> None:
 
 
 @pytest.mark.parametrize("ratio", [0.2, 0.5, 0.8])
-def test_the_secant_period_of_flat_ends(ratio: float) -> None:
+def test_the_secant_period_of_flat_ends(ratio):
     """Of angles that are small u = 2 R theta and F = W (alpha - theta), whatever the masses are."""
     structure = equipped(FLAT, tan_alpha=0.02)
     rotation = ratio * structure.critical_rotation

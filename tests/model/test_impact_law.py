@@ -1,9 +1,6 @@
 """Restitution from momentum balances made anew with numbers, and what is refused."""
 
-from __future__ import annotations
-
 import math
-from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -24,9 +21,7 @@ bearings = st.builds(
 ratios = st.floats(0.0, 50.0)
 
 
-def angular_momentum_ratio(
-    bearing: Bearing, gamma: float, eta: float, *, floors_jump: bool, reach: float = 1.0
-) -> float:
+def angular_momentum_ratio(bearing, gamma, eta, *, floors_jump, reach=1.0):
     """theta'+/theta'- of one column and its share of beam and floors, by Newton's laws.
 
     Unknown: the rate after, and the impulses (X, Y) at the new lower and upper edges, where the
@@ -41,7 +36,7 @@ def angular_momentum_ratio(
 
     # Velocities per unit rate. Rate > 0 turns clockwise. Before, the column turns about the lower
     # left edge (-b, -h) while falling from theta < 0 to 0; after, about the lower right (b, -h).
-    def centre(pivot_x: float) -> tuple[float, float]:
+    def centre(pivot_x):
         return h, pivot_x  # (u, v) of the centre: clockwise about (pivot_x, -h)
 
     before, after = centre(-b), centre(b)
@@ -63,9 +58,7 @@ def angular_momentum_ratio(
 
 @pytest.mark.evidence("impact laws", "exact")
 @given(bearings, ratios, ratios)
-def test_restitution_is_the_momentum_balance(
-    bearing: Bearing, gamma: float, eta: float
-) -> None:
+def test_restitution_is_the_momentum_balance(bearing, gamma, eta):
     for law, floors_jump in ((rigid_restitution, True), (flexible_restitution, False)):
         expected = angular_momentum_ratio(bearing, gamma, eta, floors_jump=floors_jump)
         assert law(bearing, gamma, eta) == pytest.approx(expected, abs=1e-11)
@@ -73,7 +66,7 @@ def test_restitution_is_the_momentum_balance(
 
 @pytest.mark.evidence("impact laws", "published")
 @given(st.floats(0.01, 0.5))
-def test_a_rectangular_block_has_housners_restitution(tan_alpha: float) -> None:
+def test_a_rectangular_block_has_housners_restitution(tan_alpha):
     bearing = Bearing(1.0, tan_alpha, tan_alpha, FLAT)
     expected = 1.0 - 1.5 * math.sin(bearing.alpha) ** 2
     assert rigid_restitution(bearing, 0.0, 0.0) == pytest.approx(expected, abs=1e-15)
@@ -81,8 +74,7 @@ def test_a_rectangular_block_has_housners_restitution(tan_alpha: float) -> None:
 
 @pytest.mark.evidence("impact laws", "program")
 @given(bearings)
-def test_the_second_integrator_uses_the_same_restitution(bearing: Bearing) -> None:
-    law: Literal["rigid", "flexible"]
+def test_the_second_integrator_uses_the_same_restitution(bearing):
     for law in ("rigid", "flexible"):
         structure = podium(1, bearing.slenderness, law=ImpactLaw(law))
         own = StoreyLagrangian(oracle_system(structure)).restitution
@@ -91,9 +83,7 @@ def test_the_second_integrator_uses_the_same_restitution(bearing: Bearing) -> No
 
 @pytest.mark.evidence("impact laws", "exact")
 @given(bearings, ratios, st.floats(0.0, 4.0), st.booleans(), st.floats(0.0, 1.5))
-def test_loss_is_where_the_impulse_acts(
-    bearing: Bearing, gamma: float, eta: float, floors_jump: bool, reach: float
-) -> None:
+def test_loss_is_where_the_impulse_acts(bearing, gamma, eta, floors_jump, reach):
     """Impulses at p B lose kappa = p (P + Q)/(P + p Q) of what those at B lose."""
     b2 = math.sin(bearing.alpha) ** 2
     sideways = gamma * (1.0 + eta) if floors_jump else gamma
@@ -124,7 +114,7 @@ FLEXIBLE, RIGID = (
         (ImpactLaw("rigid", factor=0.9), 0.9 * RIGID),
     ],
 )
-def test_loss_value_and_factor(law: ImpactLaw, expected: float) -> None:
+def test_loss_value_and_factor(law, expected):
     assert law.ratio(BEARING, 10.0, 3.0) == pytest.approx(expected, rel=1e-15)
     assert law.floors_jump == (law.kind != "flexible")
 
@@ -141,12 +131,12 @@ def test_loss_value_and_factor(law: ImpactLaw, expected: float) -> None:
           for e in (0.0, -0.2, 1.2)),
     ],
 )  # fmt: skip
-def test_laws_that_cannot_be_are_refused(given: dict[str, Any], said: str) -> None:
+def test_laws_that_cannot_be_are_refused(given, said):
     with pytest.raises(ValueError, match=said):
         podium(2, law=ImpactLaw(**given))
 
 
-def test_columns_too_stout_to_go_over_are_refused_with_a_remedy() -> None:
+def test_columns_too_stout_to_go_over_are_refused_with_a_remedy():
     """1 - 2 sin^2(alpha) <= 0 from 45 degrees on, with the rigid law under a heavy building."""
     rigid = ImpactLaw("rigid")
     for tan_alpha, admissible in ((0.99, True), (1.01, False)):

@@ -1,10 +1,7 @@
 """The storey and its building as one structure: ratios, statics, limits."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -28,7 +25,7 @@ structures = st.builds(
 )
 
 
-def test_ratios_of_the_paper() -> None:
+def test_ratios_of_the_paper():
     structure = podium(6, 0.15, 0.5)
     assert structure.gamma == 10.0
     assert structure.eta == pytest.approx(6.0, rel=1e-15)
@@ -43,14 +40,12 @@ def test_ratios_of_the_paper() -> None:
 
 
 @given(structures, st.floats(0.05, 1.5))
-def test_the_force_does_the_work_of_lifting(
-    structure: PodiumStructure, share: float
-) -> None:
+def test_the_force_does_the_work_of_lifting(structure, share):
     """Integral of F du_b = W v_b, across beta and beyond theta_cr."""
     bearing, end = structure.bearing, share * structure.critical_rotation
     diameter = 2.0 * bearing.semi_diagonal
 
-    def power(x: float) -> float:
+    def power(x):
         force, _, _ = structure.path(np.array([x]))
         phase = bearing.rolling if x < bearing.beta else bearing.rocking
         C = phase.c + phase.p * math.sin(x) - phase.q * math.cos(x)
@@ -65,7 +60,7 @@ def test_the_force_does_the_work_of_lifting(
 
 
 @given(structures)
-def test_initial_stiffness_is_the_slope_of_the_curve(structure: PodiumStructure) -> None:
+def test_initial_stiffness_is_the_slope_of_the_curve(structure):
     x = np.array([0.0, 1e-4, 2e-4, 3e-4])
     force, u, _ = structure.path(x)
     # cubic through four points; their spacing of 1e-4 leaves rounding 1e-16/1e-4
@@ -74,7 +69,7 @@ def test_initial_stiffness_is_the_slope_of_the_curve(structure: PodiumStructure)
     assert structure.initial_stiffness == pytest.approx(float(slope), abs=1e-6 * size)
 
 
-def test_the_rigid_frequency_parameter_of_a_block_is_housners() -> None:
+def test_the_rigid_frequency_parameter_of_a_block_is_housners():
     block = PodiumStructure(Bearing(2.0, 0.2, 0.2, FLAT), 1e3, 0.0)
     expected = math.sqrt(0.75 * 9.80665 / 2.0)
     assert block.rigid_frequency_parameter == pytest.approx(expected, rel=1e-14)
@@ -97,12 +92,12 @@ def test_the_rigid_frequency_parameter_of_a_block_is_housners() -> None:
         ),
     ],
 )
-def test_what_is_outside_the_model_is_refused(given: dict[str, Any], said: str) -> None:
+def test_what_is_outside_the_model_is_refused(given, said):
     with pytest.raises(ValueError, match=said):
         replace(podium(2), **given)
 
 
-def test_what_is_followed_in_one_plane_only() -> None:
+def test_what_is_followed_in_one_plane_only():
     """Floors that jump, where there are impacts that they may jump at."""
     bearing, ball = Bearing(1.5, 0.15, 0.3, 0.5), Bearing(1.5, 0.0, 0.3, 0.8)
     jumps, above = ImpactLaw("value", 0.9), building(2)
@@ -126,7 +121,7 @@ def test_what_is_followed_in_one_plane_only() -> None:
     assert not PodiumStructure(bearing, 2e4, 2e5, above, contact=soft).planar_only
 
 
-def test_forces_of_columns_leave_out_shocks_where_there_are_any() -> None:
+def test_forces_of_columns_leave_out_shocks_where_there_are_any():
     bearing, above = Bearing(1.5, 0.15, 0.3, 0.5), building(2)
     rigid = PodiumStructure(bearing, 2e4, 2e5, above)
     soft = replace(rigid, contact=Contact("plane", stiffness=1e9))
@@ -141,7 +136,7 @@ def test_forces_of_columns_leave_out_shocks_where_there_are_any() -> None:
     assert len(ball.left_out_of_columns(both=False)) == 1
 
 
-def test_joints_are_the_same_in_both_directions() -> None:
+def test_joints_are_the_same_in_both_directions():
     """The ratio of periods is that of x."""
     x, y = building(2), building(2, 0.3)
     soft = PodiumStructure(
@@ -155,9 +150,7 @@ def test_joints_are_the_same_in_both_directions() -> None:
 
 
 @pytest.mark.parametrize(("storeys", "tan_alpha"), [(0, 0.15), (3, 0.15), (3, 0.25)])
-def test_the_turn_of_a_pass_by_the_kinetic_energy_of_a_cone(
-    storeys: int, tan_alpha: float
-) -> None:
+def test_the_turn_of_a_pass_by_the_kinetic_energy_of_a_cone(storeys, tan_alpha):
     """A straight way over the cone A dr^2 + K r^2 dphi^2, from energies of masses that move."""
     s = podium(storeys, tan_alpha, 0.5)
     b, small = s.bearing, 1e-5

@@ -1,29 +1,25 @@
 """The shear building: profiles, matrices, modes, and damping in every mode."""
 
-from __future__ import annotations
-
 import math
-from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from paper_structures import Array, building
+from paper_structures import building
 
 from rpscli.model.superstructure import (
     ModalDamping,
-    Profile,
     RayleighDamping,
     Superstructure,
     profile_stiffnesses,
     stiffness_matrix,
 )
 
-PROFILES: tuple[Profile, ...] = ("sine", "uniform", "linear", "flexural")
+PROFILES = ("sine", "uniform", "linear", "flexural")
 
 
-def positive(size: int, most: float = 5.0) -> st.SearchStrategy[Array]:
+def positive(size, most=5.0):
     return st.lists(st.floats(0.2, most), min_size=size, max_size=size).map(np.array)
 
 
@@ -41,9 +37,7 @@ buildings = st.integers(1, 12).flatmap(
     st.floats(0.05, 5.0),
     st.sampled_from([p for p in PROFILES if p != "uniform"]),
 )
-def test_a_profile_has_its_period_and_mode(
-    masses: Array, period: float, profile: Profile
-) -> None:
+def test_a_profile_has_its_period_and_mode(masses, period, profile):
     n = len(masses)
     k = profile_stiffnesses(masses, period, profile)
     above = Superstructure(masses, k, RayleighDamping(0.0))
@@ -58,9 +52,7 @@ def test_a_profile_has_its_period_and_mode(
 
 
 @given(st.integers(1, 12), st.floats(0.05, 5.0))
-def test_uniform_stiffness_of_equal_floors_is_the_textbook_chain(
-    n: int, period: float
-) -> None:
+def test_uniform_stiffness_of_equal_floors_is_the_textbook_chain(n, period):
     """w_r = 2 sqrt(k/m) sin((2 r - 1) pi/(2 (2 n + 1)))."""
     masses = np.full(n, 3.0)
     k = profile_stiffnesses(masses, period, "uniform")
@@ -72,7 +64,7 @@ def test_uniform_stiffness_of_equal_floors_is_the_textbook_chain(
     assert above.periods[0] == pytest.approx(period, rel=1e-10)
 
 
-def test_the_stiffness_matrix_is_that_of_springs_in_series() -> None:
+def test_the_stiffness_matrix_is_that_of_springs_in_series():
     """Energy of the springs; a unit force at the roof is carried by all of them."""
     k = np.array([3.0, 2.0, 5.0])
     K = stiffness_matrix(k)
@@ -85,7 +77,7 @@ def test_the_stiffness_matrix_is_that_of_springs_in_series() -> None:
 
 
 @given(buildings)
-def test_modes_are_normalised_and_complete(above: Superstructure) -> None:
+def test_modes_are_normalised_and_complete(above):
     phi, M, K = above.shapes, above.mass_matrix, above.stiffness_matrix
     n = above.storeys
     assert phi.T @ M @ phi == pytest.approx(np.eye(n), abs=1e-11)
@@ -100,9 +92,7 @@ def test_modes_are_normalised_and_complete(above: Superstructure) -> None:
 @given(
     buildings, st.floats(0.001, 0.3), st.tuples(st.integers(1, 12), st.integers(1, 12))
 )
-def test_rayleigh_damping_has_its_ratio_in_both_modes(
-    above: Superstructure, ratio: float, modes: tuple[int, int]
-) -> None:
+def test_rayleigh_damping_has_its_ratio_in_both_modes(above, ratio, modes):
     damping = RayleighDamping(ratio, modes)
     above = Superstructure(above.masses, above.stiffnesses, damping)
     xi, w = above.damping_ratios, above.frequencies
@@ -116,7 +106,7 @@ def test_rayleigh_damping_has_its_ratio_in_both_modes(
     assert a1 > 0.0
 
 
-def test_one_storey_takes_stiffness_proportional_damping() -> None:
+def test_one_storey_takes_stiffness_proportional_damping():
     assert RayleighDamping(0.05, (1, 2)).coefficients(np.array([20.0])) == (0.0, 0.005)
     assert RayleighDamping(0.05, (2, 2)).coefficients(np.array([10.0, 20.0])) == (
         0.0,
@@ -125,9 +115,7 @@ def test_one_storey_takes_stiffness_proportional_damping() -> None:
 
 
 @given(buildings, st.floats(0.0, 0.3))
-def test_modal_damping_is_the_same_in_every_mode(
-    above: Superstructure, ratio: float
-) -> None:
+def test_modal_damping_is_the_same_in_every_mode(above, ratio):
     above = Superstructure(above.masses, above.stiffnesses, ModalDamping(ratio))
     assert above.damping_ratios.tolist() == [ratio] * above.storeys
     generalised = above.shapes.T @ above.damping_matrix @ above.shapes
@@ -152,13 +140,13 @@ def test_modal_damping_is_the_same_in_every_mode(
         ({"hardening": math.nan}, "hardening = nan must be"),
     ],
 )
-def test_what_is_no_building_is_refused(given: dict[str, Any], said: str) -> None:
-    whole: dict[str, Any] = {"masses": np.ones(2), "stiffnesses": np.ones(2)}
+def test_what_is_no_building_is_refused(given, said):
+    whole = {"masses": np.ones(2), "stiffnesses": np.ones(2)}
     with pytest.raises(ValueError, match=said):
         Superstructure(damping=RayleighDamping(0.05), **(whole | given))
 
 
-def test_a_building_cannot_be_changed_from_outside() -> None:
+def test_a_building_cannot_be_changed_from_outside():
     masses = np.ones(2)
     above = Superstructure(masses, np.ones(2), RayleighDamping(0.05))
     masses[0] = 7.0

@@ -12,8 +12,6 @@ v_b/2 + H (1 - cos theta), and u_b' = 2 R C theta' with C = cos(alpha - |theta|)
 that much is geometry.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property
@@ -42,21 +40,21 @@ class CompliantStorey:
     kept: float
 
     @cached_property
-    def motion(self) -> StoreyLagrangian:
+    def motion(self):
         """Masses, and the angles of the ends."""
         return StoreyLagrangian(self.system)
 
     @property
-    def alpha(self) -> float:
+    def alpha(self):
         return math.atan(self.system.tan_alpha)
 
     @cached_property
-    def stiffness(self) -> Array:
+    def stiffness(self):
         """(n, n) of the building."""
         between = np.eye(self.motion.storeys) - np.eye(self.motion.storeys, k=-1)
         return np.asarray(between.T @ np.diag(self.system.stiffnesses) @ between)
 
-    def arms(self, x: float) -> tuple[float, float, float, float, float]:
+    def arms(self, x):
         """Weight's arm, B_v, dB_v/dx, C and dC/dx at x > phi_u."""
         u, a = self.phi_u, self.alpha
         B, C = np.sin(a - x), np.cos(a - x)
@@ -67,7 +65,7 @@ class CompliantStorey:
         slope = -C + there * sunk / (2.0 * x)
         return B - np.sin(a) * (1.0 - m), B - there * sunk, slope, C, B
 
-    def rates(self, a_g: float, y: Array, bedded: bool, a_v: float = 0.0) -> Array:
+    def rates(self, a_g, y, bedded, a_v=0.0):
         """y = [theta, theta', u_t, u_t'], theta and all else of the side with theta > 0.
 
         What is lifted, W/g by v_b' = 2 R B_v theta', feels a_v; in full contact nothing is.
@@ -93,13 +91,13 @@ class CompliantStorey:
         return np.array([rate, ddx, *du, *(-forces / self.system.masses - a_g)])
 
     @cached_property
-    def secant(self) -> float:
+    def secant(self):
         """Of the moment up to phi_u [N m]."""
         weight = self.motion.lifted_mass * self.system.gravity
         arm = self.arms(self.phi_u * (1.0 + 1e-15))[0]
         return float(2.0 * self.system.R * weight * arm / self.phi_u)
 
-    def beam_path(self, x: float, bedded: bool) -> float:
+    def beam_path(self, x, bedded):
         """u_b, linear up to phi_u and continuous there."""
         a, u = self.alpha, self.phi_u
         if bedded:
@@ -107,7 +105,7 @@ class CompliantStorey:
         start = np.cos(a - u) * u + np.sin(a - u)
         return float(2.0 * self.system.R * (start - np.sin(a - x)))
 
-    def kept_at_uplift(self) -> float:
+    def kept_at_uplift(self):
         """Of theta', so that the energy of the tilt is kept where B_v jumps."""
         if self.plane:
             return 1.0
@@ -116,32 +114,30 @@ class CompliantStorey:
         low = self.motion.spin_inertia + own * (D * np.cos(a)) ** 2
         return float(np.sqrt(low / (low + (own + total) * (D * np.sin(a)) ** 2)))
 
-    def history(
-        self, a_g: Array, dt: float, a_v: Array | None = None, tolerance: float = 1e-11
-    ) -> tuple[Array, Array, int]:
+    def history(self, a_g, dt, a_v=None, tolerance=1e-11):
         """theta and u_t at the samples, and the number of returns to full contact; from rest."""
         n = self.motion.storeys
         y, side, bedded, returns = np.zeros(2 + 2 * n), 1.0, True, 0
         found = [(0.0, *y[2 : 2 + n])]
         a_v = np.zeros_like(a_g) if a_v is None else a_v
 
-        def rates(t: float, z: Array, k: int, side: float, bedded: bool) -> Array:
+        def rates(t, z, k, side, bedded):
             early, late = 1.0 - t / dt, t / dt
             across, up = (early * a[k] + late * a[k + 1] for a in (a_g, a_v))
             return self.rates(side * across, z, bedded, up)
 
-        def above(_t: float, z: Array, *_: object) -> float:
+        def above(_t, z, *_):
             return float(z[0] - self.phi_u)
 
-        def below(_t: float, z: Array, *_: object) -> float:
+        def below(_t, z, *_):
             return float(z[0] + self.phi_u)
 
-        above.terminal = below.terminal = True  # type: ignore[attr-defined]
-        below.direction = -1.0  # type: ignore[attr-defined]
+        above.terminal = below.terminal = True
+        below.direction = -1.0
         for k in range(len(a_g) - 1):
             t = 0.0
             while dt - t > 1e-13:
-                above.direction = 1.0 if bedded else -1.0  # type: ignore[attr-defined]
+                above.direction = 1.0 if bedded else -1.0
                 step = solve_ivp(
                     rates, (t, dt), y, "DOP853", events=[above, below] if bedded else [above],
                     args=(k, side, bedded), rtol=tolerance, atol=1e-13, max_step=0.25 * dt,
@@ -154,7 +150,7 @@ class CompliantStorey:
         table = np.array(found)
         return table[:, 0], table[:, 1:], returns
 
-    def _pass(self, y: Array, side: float, bedded: bool) -> tuple[Array, float, bool]:
+    def _pass(self, y, side, bedded):
         """Over phi_u: outwards nothing is lost, inwards theta' keeps `kept`; floors keep theirs."""
         if y[0] < 0.0:
             y, side = -y, -side
@@ -252,15 +248,7 @@ def follow(
                 return
 
 
-def resolved(
-    structure: Any,
-    acceleration: Array,
-    dt: float,
-    *,
-    zeta: float,
-    seconds: float,
-    limit: float,
-) -> tuple[float, float]:
+def resolved(structure, acceleration, dt, *, zeta, seconds, limit):
     """max |theta| [rad] and largest base shear [N] of a `PodiumStructure` with flat ends.
 
     `zeta` is the damping ratio of the bounce on all beds, omega_v^2 = g/(2 D_0).

@@ -1,10 +1,7 @@
 """Steps of DOP853, and roots found between turning points, so that none can hide in a pair."""
 
-from __future__ import annotations
-
-from collections.abc import Callable, Iterator
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,10 +9,9 @@ from scipy.integrate import DOP853
 from scipy.optimize import brentq
 
 Array = NDArray[np.float64]
-Rates = Callable[[float, Any], Any]
 
 DEGREE = 7  # of the dense output of DOP853
-NODES: Array = np.asarray(0.5 - 0.5 * np.cos(np.pi * np.arange(1, DEGREE + 1) / DEGREE))
+NODES = np.asarray(0.5 - 0.5 * np.cos(np.pi * np.arange(1, DEGREE + 1) / DEGREE))
 _FIT = np.linalg.inv(NODES[:, None] ** np.arange(1, DEGREE + 1))
 
 
@@ -26,11 +22,11 @@ class Curve:
     the other side of a level, the end is the crossing.
     """
 
-    def __init__(self, rising: Array, end: float | None = None) -> None:
+    def __init__(self, rising, end=None):
         self.rising, self.end = rising, float(np.sum(rising)) if end is None else end
 
     @classmethod
-    def through(cls, values: Array) -> Curve:
+    def through(cls, values):
         """Of degree 7 through values at 0 and at the nodes, and what follows from another one at 1.
 
         The value at 0 is kept exactly: a step that starts on an event starts on it exactly.
@@ -41,12 +37,12 @@ class Curve:
         )
 
     @cached_property
-    def noise(self) -> float:
+    def noise(self):
         """Of rounding: what starts on a level with no slope seems to wave about it."""
         return 1e-12 * float(np.sum(np.abs(self.rising[1:])))
 
     @cached_property
-    def pieces(self) -> list[float]:
+    def pieces(self):
         """0, the turning points inside (0, 1), 1."""
         slope = self.rising[1:] * np.arange(1, len(self.rising))
         if abs(slope[0]) > np.sum(np.abs(slope[1:])):
@@ -58,12 +54,12 @@ class Curve:
         ]
         return [0.0, *sorted(float(root) for root in inside), 1.0]
 
-    def highest(self, until: float) -> float:
+    def highest(self, until):
         """The largest value at a turning point up to there, or at the start."""
         turns = np.array([z for z in self.pieces if z <= until])
         return float(np.max(np.polynomial.polynomial.polyval(turns, self.rising)))
 
-    def crossing(self, level: float, direction: int, noise: float = 0.0) -> float | None:
+    def crossing(self, level, direction, noise=0.0):
         """The least argument in (0, 1] where the level is passed downwards (-1) or upwards (+1).
 
         A start on the level itself is no crossing. The curve must have been off the level by more
@@ -72,7 +68,7 @@ class Curve:
         shifted = self.rising.copy()
         shifted[0] -= level
 
-        def excess(z: float) -> float:
+        def excess(z):
             return direction * float(np.polynomial.polynomial.polyval(z, shifted))
 
         values = [*(excess(z) for z in self.pieces[:-1]), direction * (self.end - level)]
@@ -102,19 +98,19 @@ class Stepper:
     tolerance: Array
     step = np.inf  # the last free step
 
-    def solver(self, rates: Rates, start: float, end: float) -> DOP853:
+    def solver(self, rates, start, end):
         first = min(self.step, end - start)
-        atol: Any = self.tolerance
+        atol = self.tolerance
         return DOP853(
             rates, start, self.y, end, rtol=self.rtol, atol=atol, first_step=first
         )
 
-    def advanced(self, solver: DOP853) -> None:
+    def advanced(self, solver):
         message = solver.step()
         if solver.status == "failed":
             raise RuntimeError(f"DOP853: {message}")
 
-    def steps(self, rates: Rates, duration: float) -> Iterator[Step]:
+    def steps(self, rates, duration):
         """Each is taken when the next one is asked for."""
         solver = self.solver(rates, 0.0, duration)
         while solver.status == "running":
@@ -128,9 +124,7 @@ class Stepper:
             cut = solver.t >= duration
             self.step = max(h, min(self.step, 10.0 * h)) if cut else h
 
-    def meet(
-        self, rates: Rates, miss: Callable[[Array], float], step: Step, at: float
-    ) -> float:
+    def meet(self, rates, miss, step, at):
         """Integrate to an event itself: the dense output is less accurate than the step.
 
         Returns its time; y is the state there.

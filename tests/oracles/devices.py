@@ -9,14 +9,9 @@ Laws are functions, clipped where the program follows branches: integrators find
 themselves. Only what a tendon has yielded is remembered.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
-
-from .storey_lagrangian import Contact, StoreyLagrangian
 
 
 @dataclass(frozen=True)
@@ -42,7 +37,7 @@ class Stop:
     stiffness: float
     damping: float = 0.0
 
-    def push(self, displacement: float, speed: float) -> float:
+    def push(self, displacement, speed):
         """Against a displacement that grows with a speed."""
         if displacement <= self.gap:
             return 0.0
@@ -66,19 +61,14 @@ class RollingResistance:
     lever: float
 
 
-OracleDevice = Viscous | Friction | Stop | Tendon | RollingResistance
-
-
 class Equipment:
     """The devices of a storey, with the elongation that each tendon keeps [m]."""
 
-    def __init__(
-        self, lagrangian: StoreyLagrangian, devices: tuple[OracleDevice, ...]
-    ) -> None:
+    def __init__(self, lagrangian, devices):
         self.lagrangian, self.devices = lagrangian, devices
         self.plastic = [0.0] * len(devices)
 
-    def opening(self, x: float, *, rolling: bool) -> tuple[complex, complex]:
+    def opening(self, x, *, rolling):
         """z(x) and dz/dx [m]; x is taken out of differences, so that small ones keep digits."""
         motion = self.lagrangian
         turn = 2j * math.sin(0.5 * x) * cmath.exp(-0.5j * x)  # 1 - exp(-i x)
@@ -89,18 +79,18 @@ class Equipment:
         start = motion.half_width + motion.radius * motion.beta
         return (start - arm) + arm * turn, 1j * arm * (1.0 - turn)
 
-    def elongation(self, x: float, *, rolling: bool) -> tuple[float, float]:
+    def elongation(self, x, *, rolling):
         """e(x) and de/dx of a tendon [m]."""
         z, slope = self.opening(x, rolling=rolling)
         if z == 0.0:
             return 0.0, 2.0 * abs(slope)
         return 2.0 * abs(z), 2.0 * (z.conjugate() * slope).real / abs(z)
 
-    def tension(self, k: int, tendon: Tendon, e: float) -> float:
+    def tension(self, k, tendon, e):
         elastic = tendon.prestress + tendon.stiffness * (e - self.plastic[k])
         return min(max(elastic, 0.0), tendon.yield_force)
 
-    def rolling(self, device: RollingResistance) -> float:
+    def rolling(self, device):
         """Moment of the resistance."""
         return (
             2.0
@@ -109,9 +99,7 @@ class Equipment:
             * device.lever
         )
 
-    def moments(
-        self, contact: Contact, theta: float, rate: float, direction: int
-    ) -> Iterator[tuple[float, float]]:
+    def moments(self, contact, theta, rate, direction):
         """Of each device: the moment against theta's growth, split into active and frictional."""
         side, x = contact.side, contact.side * theta
         shift, slope, _ = self.lagrangian.cap_beam(x, rolling=contact.rolling)
@@ -130,13 +118,13 @@ class Equipment:
                 e, growth = self.elongation(x, rolling=contact.rolling)
                 yield -side * device.columns * self.tension(k, device, e) * growth, 0.0
 
-    def at_rest(self, contact: Contact, theta: float) -> tuple[float, float]:
+    def at_rest(self, contact, theta):
         """Moment of the devices without rate, and what friction holds beside it, both [N m]."""
         pairs = list(self.moments(contact, theta, 0.0, 1))
         return sum(active for active, _ in pairs), -sum(held for _, held in pairs)
 
     @property
-    def turns(self) -> bool:
+    def turns(self):
         """Whether some force changes its law where the rate changes its sign."""
         return any(
             isinstance(device, Friction | RollingResistance | Tendon)
@@ -144,7 +132,7 @@ class Equipment:
             for device in self.devices
         )
 
-    def yields(self, x: float, *, rolling: bool) -> bool:
+    def yields(self, x, *, rolling):
         """Whether a tendon is at its limit."""
         return any(
             self.tension(k, d, self.elongation(x, rolling=rolling)[0]) >= d.yield_force
@@ -152,7 +140,7 @@ class Equipment:
             if isinstance(d, Tendon)
         )
 
-    def unload(self, x: float, *, rolling: bool) -> None:
+    def unload(self, x, *, rolling):
         """The tilt turns: what yielded keeps its elongation."""
         e, _ = self.elongation(x, rolling=rolling)
         for k, device in enumerate(self.devices):

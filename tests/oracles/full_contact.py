@@ -1,16 +1,12 @@
 """Full contact: the fixed-base building under a linear ground acceleration, by exponentials."""
 
-from __future__ import annotations
-
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import expm
 
-from .crossings import Array, Curve
-from .storey_lagrangian import StoreyLagrangian
+from .crossings import Curve
 
 _TAYLOR_ORDER = (
     20  # 1/21! of the leading term with sub-intervals of one radian of the fastest mode
@@ -34,7 +30,7 @@ class LinearGround:
     vertical: float
     vertical_rate: float
 
-    def later(self, tau: float) -> LinearGround:
+    def later(self, tau):
         return LinearGround(
             self.horizontal + tau * self.horizontal_rate,
             self.horizontal_rate,
@@ -46,7 +42,7 @@ class LinearGround:
 class FullContact:
     """The fixed-base building under a linear load, z = [d, d', a_g, a_g'], by exponentials."""
 
-    def __init__(self, lagrangian: StoreyLagrangian) -> None:
+    def __init__(self, lagrangian):
         system, n = lagrangian.system, lagrangian.storeys
         flow = np.zeros((2 * n + 2, 2 * n + 2))
         flow[:n, n : 2 * n] = np.eye(n)
@@ -69,23 +65,21 @@ class FullContact:
         for order in range(1, _TAYLOR_ORDER + 1):
             rows.append(rows[-1] @ flow / order)
         self.taylor = np.array(rows)
-        self._steps: dict[float, Array] = {}
+        self._steps = {}
 
-    def over(self, z: Array, tau: float) -> Array:
+    def over(self, z, tau):
         if tau not in self._steps:
             self._steps[tau] = expm(self.flow * tau)
         return self._steps[tau] @ z
 
-    def push(self, z: Array) -> float:
+    def push(self, z):
         """Horizontal force on the cap beam towards theta > 0."""
         return float(self.taylor[0] @ z)
 
-    def leaving(
-        self, z: Array, ground: LinearGround, h: float, exits: Sequence[Exit]
-    ) -> tuple[float, int] | None:
+    def leaving(self, z, ground, h, exits):
         """First instant in [0, h] at which the push passes what holds the storey, and whither."""
         push = self.taylor @ z * h ** np.arange(_TAYLOR_ORDER + 1)
-        found: list[tuple[float, int]] = []
+        found = []
         for way in exits:
             hold = way.lift * np.array(
                 [self.gravity + ground.vertical, h * ground.vertical_rate]

@@ -10,16 +10,12 @@ the contacts, which takes the normal force as it is at each instant. Exponents a
 engine has not. What bodies do otherwise than the model assumes are changes of the compiled text.
 """
 
-from __future__ import annotations
-
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
-from xml.etree.ElementTree import Element, SubElement, tostring
+from xml.etree.ElementTree import SubElement, tostring
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rpscli.tools.export.multibody import (
     SPACING,
@@ -31,8 +27,8 @@ from rpscli.tools.export.multibody import (
 )
 
 from .crossings import Array
-from .devices import Friction, OracleDevice, RollingResistance, Stop, Tendon, Viscous
-from .storey_lagrangian import Contact, OracleSystem, StoreyLagrangian
+from .devices import Friction, RollingResistance, Stop, Tendon, Viscous
+from .storey_lagrangian import Contact, StoreyLagrangian
 
 STEPS_TOGETHER = 10
 """Steps under one value of the ground acceleration, that of their middle."""
@@ -68,7 +64,7 @@ class Departures:
     spacing: float = SPACING
     longer: tuple[float, ...] = ()
 
-    def apply(self, specification: Any, columns: int, storeys: int) -> None:
+    def apply(self, specification, columns, storeys):
         """Change the engine's specification."""
         for geom in specification.geoms if self.friction else ():
             geom.friction = self.friction, 0.0, 0.0
@@ -81,7 +77,7 @@ class Departures:
         if any(self.longer):
             self._lengthen(specification)
 
-    def _space(self, specification: Any, columns: int) -> None:
+    def _space(self, specification, columns):
         """The beam grows with the distance of the columns, and keeps its mass."""
         for c in range(columns):
             specification.joint(f"tilt {c}").parent.pos[0] *= self.spacing / SPACING
@@ -90,7 +86,7 @@ class Departures:
         box.size[0] *= self.spacing / SPACING
         beam.inertia = [beam.mass * (box.size[0] ** 2 + box.size[2] ** 2) / 3.0] * 3
 
-    def _lengthen(self, specification: Any) -> None:
+    def _lengthen(self, specification):
         """All tops stay level; nothing stands on the ground itself any more."""
         world = specification.worldbody
         world.geoms[0].pos = 0.0, 0.0, -FOOTING
@@ -126,20 +122,20 @@ class MultibodyResult:
 
 
 def simulate(
-    system: OracleSystem,
-    ag: Array,
-    dt: float,
-    duration: float,
+    system,
+    ag,
+    dt,
+    duration,
     *,
-    initial_rotation: float = 0.0,
-    columns: int = 2,
-    time_step: float = TIME_STEP,
-    level: bool = True,
-    closing_damping: float = 1.0,
-    devices: Sequence[OracleDevice] = (),
-    vertical_period: float | None = None,
-    departures: Departures = NO_DEPARTURES,
-) -> MultibodyResult:
+    initial_rotation=0.0,
+    columns=2,
+    time_step=TIME_STEP,
+    level=True,
+    closing_damping=1.0,
+    devices=(),
+    vertical_period=None,
+    departures=NO_DEPARTURES,
+):
     """Response to ground acceleration samples [m/s2] from rest, or after release from a tilt.
 
     Unless `level`, the cap beam may tilt on its columns. `closing_damping` is that of contacts over
@@ -197,7 +193,7 @@ def simulate(
     )
 
 
-def turning_points(rotation: Array) -> Array:
+def turning_points(rotation):
     """Largest |theta| of each swing, one a side."""
     swings = np.split(rotation, np.flatnonzero(np.diff(np.sign(rotation))) + 1)
     return np.array([np.max(np.abs(swing)) for swing in swings])
@@ -206,7 +202,7 @@ def turning_points(rotation: Array) -> Array:
 class Upright:
     """Floors on equal vertical springs, at rest under their weight."""
 
-    def __init__(self, system: OracleSystem, period: float) -> None:
+    def __init__(self, system, period):
         self.masses, n = np.asarray(system.masses), len(system.masses)
         chain = 2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1)
         chain[-1, -1] = 1.0
@@ -215,7 +211,7 @@ class Upright:
         self.damping = self.stiffness * 2.0 * 0.05 * period / (2.0 * math.pi)
         self.weights = system.gravity * np.cumsum(self.masses[::-1])[::-1]
 
-    def add(self, described: Element) -> None:
+    def add(self, described):
         """The freedom of each floor to rise, on a spring to what is below."""
         tendons = described.findall("tendon")[0]
         for i in range(len(self.masses)):
@@ -229,22 +225,22 @@ class Upright:
                 for joint, sign in ((i, "1"), (i - 1, "-1")):
                     SubElement(spring, "joint", joint=f"lift {joint}", coef=sign)
 
-    def rest(self, i: int) -> float:
+    def rest(self, i):
         """How far the weight above compresses a spring [m]."""
         return float(self.weights[i] / self.stiffness)
 
-    def carried(self, lift: float, rate: float) -> float:
+    def carried(self, lift, rate):
         """Force under the first floor over the weight above."""
         force = self.stiffness * (self.rest(0) - lift) - self.damping * rate
         return float(force / self.weights[0])
 
 
-def owner(described: Element, joint: str) -> Element:
+def owner(described, joint):
     """The body that moves by a joint."""
     return described.findall(f".//joint[@name='{joint}']/..")[0]
 
 
-def _place(data: Any, system: OracleSystem, columns: int, rotation: float) -> None:
+def _place(data, system, columns, rotation):
     """Columns tilted on their edges with the beam on top, at rest."""
     if not rotation:
         return
@@ -264,19 +260,13 @@ def _place(data: Any, system: OracleSystem, columns: int, rotation: float) -> No
             data.joint(name).qpos[0] = value
 
 
-def _longest(flags: NDArray[np.bool_]) -> int:
+def _longest(flags):
     """Length of the longest run of true values."""
     edges = np.flatnonzero(np.diff(np.concatenate(([0], flags, [0]))))
     return int(np.max(edges[1::2] - edges[::2], initial=0))
 
 
-def add_devices(
-    described: Element,
-    devices: Sequence[OracleDevice],
-    columns: int,
-    H: float,
-    time_step: float,
-) -> None:
+def add_devices(described, devices, columns, H, time_step):
     """Dampers and friction along the beam's way, resistance of contacts, stops and cables."""
     damping = sum(
         d.coefficient for d in devices if isinstance(d, Viscous) and d.exponent == 1.0
@@ -341,13 +331,13 @@ def add_devices(
 CONTACT_TIME = 8e-5
 
 
-def inertia_ratios(tan_alpha: float) -> tuple[float, float]:
+def inertia_ratios(tan_alpha):
     """Io and I_3/(m_c R^2) of a solid cylinder."""
     square = tan_alpha**2 / (1.0 + tan_alpha**2)
     return 1.0 + square / 4.0 + (1.0 - square) / 3.0, square / 2.0
 
 
-def round_column(along_x: OracleSystem, along_y: OracleSystem) -> str:
+def round_column(along_x, along_y):
     """The model; stiffness-proportional damping alone, between neighbouring floors."""
     height = along_x.R / math.hypot(1.0, along_x.tan_alpha)
     width = height * along_x.tan_alpha
@@ -382,18 +372,18 @@ def round_column(along_x: OracleSystem, along_y: OracleSystem) -> str:
   <equality>{ties}</equality></mujoco>"""
 
 
-def slides(name: str) -> str:
+def slides(name):
     return "".join(
         f'<joint name="{name} {axis}" type="slide" axis="{direction}"/>'
         for axis, direction in (("x", "1 0 0"), ("y", "0 1 0"), ("z", "0 0 1"))
     )
 
 
-def inertial(mass: float) -> str:
+def inertial(mass):
     return f'<inertial pos="0 0 0" mass="{mass}" diaginertia="1 1 1"/>'
 
 
-def floor(i: int, along_x: OracleSystem, along_y: OracleSystem) -> str:
+def floor(i, along_x, along_y):
     """One floor on springs to what is below, whose body it is in; left open."""
     joints = ""
     for axis, direction, way in (("x", "1 0 0", along_x), ("y", "0 1 0", along_y)):
@@ -405,13 +395,7 @@ def floor(i: int, along_x: OracleSystem, along_y: OracleSystem) -> str:
     return f'<body pos="0 0 1">{joints}{inertial(along_x.masses[i])}'
 
 
-def simulate_pair(
-    along_x: OracleSystem,
-    along_y: OracleSystem,
-    ground: Array,
-    dt: float,
-    duration: float,
-) -> tuple[Array, Array]:
+def simulate_pair(along_x, along_y, ground, dt, duration):
     """Times and (X, Y) under `ground` (3, m: a_x, a_y, a_v), from rest."""
     import mujoco
 

@@ -7,29 +7,25 @@ By hand, twenty minutes on two cores:
 Names of `BUILDINGS` behind the file leave out the others.
 """
 
-from __future__ import annotations
-
 import csv
 import itertools
 import sys
-from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from paper_structures import Array, block, ground, oracle_system, podium, stillness
+from paper_structures import block, ground, oracle_system, podium, stillness
 
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.bearing import Bearing
-from rpscli.model.impact import ImpactKind, ImpactLaw
-from rpscli.model.podium import PodiumStructure
+from rpscli.model.impact import ImpactLaw
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.loading import load_record
 
-from .multibody import MultibodyResult, simulate
+from .multibody import simulate
 
 TAN_ALPHA = 0.15
 RADII = (0.0, 0.25, 0.5, 1.5)
@@ -44,7 +40,7 @@ PARTED = 0.05
 FIRST_SWING = 0.5
 """Seconds after a release in which the tilt is known beforehand."""
 
-LAWS: tuple[ImpactKind, ...] = ("flexible", "rigid")
+LAWS = ("flexible", "rigid")
 
 
 class Motion(NamedTuple):
@@ -78,9 +74,7 @@ class Row(NamedTuple):
     apart: float
 
 
-def structure_of(
-    building: str, rho: float, tan_alpha: float = TAN_ALPHA
-) -> PodiumStructure:
+def structure_of(building, rho, tan_alpha=TAN_ALPHA):
     """R = 1.5 m, arcs that no motion leaves; buildings of the paper."""
     if building == "block":
         made = replace(block(0.15, 1.0), bearing=podium(0).bearing)
@@ -89,7 +83,7 @@ def structure_of(
     return replace(made, bearing=Bearing(1.5, tan_alpha, tan_alpha + 1.9 * rho, rho))
 
 
-def strongest(record: GroundMotion, seconds: float) -> GroundMotion:
+def strongest(record, seconds):
     """The part of a record with the largest sum of squares."""
     length = round(seconds / record.dt)
     energy = np.concatenate(([0.0], np.cumsum(record.acceleration**2)))
@@ -97,7 +91,7 @@ def strongest(record: GroundMotion, seconds: float) -> GroundMotion:
     return ground(record.acceleration[start : start + length + 1], record.dt)
 
 
-def motions() -> list[Motion]:
+def motions():
     """A release, a pulse, and three recorded motions."""
     pulse = load_record("pulse:ricker?amplitude=0.4g&period=1.0")
     free = Motion("release", stillness(2e-3), 2.4, released=0.4)
@@ -108,7 +102,7 @@ def motions() -> list[Motion]:
     return [free, Motion("pulse", ground(pulse.acceleration, pulse.dt), 6.0), *recorded]
 
 
-def compare(building: str, rho: float, motion: Motion) -> list[Row]:
+def compare(building, rho, motion):
     """The engine's history beside the program's with each law."""
     structure = structure_of(building, rho)
     record, released = motion.record, motion.released * structure.bearing.alpha
@@ -139,13 +133,7 @@ def compare(building: str, rho: float, motion: Motion) -> list[Row]:
     ]
 
 
-def _row(
-    building: str,
-    motion: Motion,
-    structure: PodiumStructure,
-    settings: TimeHistorySettings,
-    resolved: MultibodyResult,
-) -> Row:
+def _row(building, motion, structure, settings, resolved):
     result = time_history(structure, motion.record, settings, with_fixed_base=False)
     trace, critical = result.trace, structure.bearing.critical_rotation
     standing = np.logical_and.accumulate(np.abs(resolved.rotation) < critical)
@@ -182,11 +170,11 @@ def _row(
     )
 
 
-def _largest(values: Array) -> float:
+def _largest(values):
     return float(np.max(np.abs(values)))
 
 
-def summary(rows: Sequence[Row], buildings: Sequence[str] = BUILDINGS) -> Iterator[str]:
+def summary(rows, buildings=BUILDINGS):
     """The table of VERIFICATION.md; values of both laws where there is a building.
 
     Worst of the recorded motions, of those that did not overturn where maxima are compared.
@@ -216,7 +204,7 @@ def summary(rows: Sequence[Row], buildings: Sequence[str] = BUILDINGS) -> Iterat
         yield f"| {building} | {rho:g} | {' | '.join(values)} |"
 
 
-def main(target: Path, *buildings: str) -> None:
+def main(target, *buildings):
     """All comparisons, written as they end."""
     buildings = buildings or BUILDINGS
     cases = list(itertools.product(buildings, RADII, motions()))
@@ -226,7 +214,7 @@ def main(target: Path, *buildings: str) -> None:
     ):
         table = csv.writer(file)
         table.writerow(Row._fields)
-        found: list[Row] = []
+        found = []
         for rows in workers.map(compare, *zip(*cases, strict=True)):
             table.writerows(rows)
             file.flush()

@@ -9,17 +9,14 @@ the turning points of the dense output, then met by a new integration that ends 
 holds a standing one, with the same matrix exponential.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
 
 import numpy as np
 
-from .crossings import Array, Curve, Rates, Stepper
-from .devices import Equipment, OracleDevice
+from .crossings import Array, Curve, Stepper
+from .devices import Equipment
 from .full_contact import Exit, FullContact, LinearGround
 from .storey_lagrangian import Contact, OracleSystem, StoreyLagrangian
 
@@ -56,15 +53,7 @@ class OracleResult:
 class _Simulation(Stepper):
     """The state y = [theta, d, theta', d'] and its contact (None: full contact)."""
 
-    def __init__(
-        self,
-        system: OracleSystem,
-        *,
-        recontact: float,
-        overturning: float,
-        rtol: float,
-        devices: tuple[OracleDevice, ...] = (),
-    ) -> None:
+    def __init__(self, system, *, recontact, overturning, rtol, devices=()):
         self.lagrangian = StoreyLagrangian(system)
         self.full_contact = FullContact(self.lagrangian)
         self.negligible = recontact * np.arctan(system.tan_alpha)
@@ -72,27 +61,27 @@ class _Simulation(Stepper):
         self.rtol = rtol
         self.equipment = Equipment(self.lagrangian, devices)
         moving = 2 * self.lagrangian.storeys + 2
-        self.y: Array = np.zeros(moving + len(devices))
+        self.y = np.zeros(moving + len(devices))
         self.tolerance = np.full(len(self.y), 1e-3 * rtol)
         # the work of devices follows from the motion and shall not shorten its steps
         self.tolerance[moving:] = np.inf
-        self.contact: Contact | None = None
+        self.contact = None
         self.stuck, self.direction = False, 1
         self.max_rotation = self.energy_lost = 0.0
         self.impacts = self.uplifts = 0
         self.overturned = False
 
-    def advance(self, ground: LinearGround, duration: float) -> None:
+    def advance(self, ground, duration):
         """Through one interval of the record, however many events it holds."""
         tau = 0.0
         while duration - tau > _REMAINDER * duration and not self.overturned:
             passed = self.stand if self.contact is None or self.stuck else self.move
             tau += passed(ground.later(tau), duration - tau)
 
-    def exits(self) -> list[Exit]:
+    def exits(self):
         """Which push, in either direction, moves the storey that stands or is stuck."""
         motion = self.lagrangian
-        ways: list[Exit] = []
+        ways = []
         for direction in (1, -1):
             contact = self.contact or Contact(direction, rolling=motion.beta > 0.0)
             theta = float(self.y[0])
@@ -102,13 +91,13 @@ class _Simulation(Stepper):
             ways.append(Exit(direction, lift, (held - direction * active) / slope.real))
         return ways
 
-    def ground_state(self, ground: LinearGround) -> Array:
+    def ground_state(self, ground):
         """z of `full_contact`: drifts, their rates and the ground."""
         n = self.lagrangian.storeys
         drifts = np.r_[self.y[1 : n + 1], self.y[n + 2 : 2 * n + 2]]
         return np.asarray(np.r_[drifts, ground.horizontal, ground.horizontal_rate])
 
-    def stand(self, ground: LinearGround, duration: float) -> float:
+    def stand(self, ground, duration):
         """No tilt rate, until uplift, sliding or the end; returns the time that passed."""
         n = self.lagrangian.storeys
         pieces = max(1, int(np.ceil(duration * self.full_contact.fastest)))
@@ -123,7 +112,7 @@ class _Simulation(Stepper):
                 return piece * h + left[0]
         return duration
 
-    def leave(self, direction: int) -> None:
+    def leave(self, direction):
         """Uplift, or the end of sticking."""
         self.direction = direction
         if self.contact is None:
@@ -134,12 +123,12 @@ class _Simulation(Stepper):
             tilt = self.contact.side * float(self.y[0])
             self.equipment.unload(tilt, rolling=self.contact.rolling)
 
-    def rates(self, ground: LinearGround, contact: Contact) -> Rates:
+    def rates(self, ground, contact):
         """y' as a function of the time since `ground` and y."""
         motion, n1 = self.lagrangian, self.lagrangian.storeys + 1
         gravity, direction = motion.system.gravity, self.direction
 
-        def rates(tau: float, y: Any) -> Any:
+        def rates(tau, y):
             a_g = ground.horizontal + tau * ground.horizontal_rate
             g = gravity + ground.vertical + tau * ground.vertical_rate
             pairs = self.equipment.moments(contact, float(y[0]), float(y[n1]), direction)
@@ -149,14 +138,14 @@ class _Simulation(Stepper):
 
         return rates
 
-    def levels(self, contact: Contact) -> list[tuple[float, int]]:
+    def levels(self, contact):
         """Values of |theta| that end this contact, with the direction of passing."""
         beta = self.lagrangian.beta
         if contact.rolling:
             return [(0.0, -1), (beta, 1), (self.limit, 1)]
         return [(beta, -1), (self.limit, 1)]
 
-    def move(self, ground: LinearGround, duration: float) -> float:
+    def move(self, ground, duration):
         """Rolling or rocking until an event or the end; returns the time that passed."""
         contact, n1 = self.contact, self.lagrangian.storeys + 1
         assert contact is not None
@@ -190,13 +179,13 @@ class _Simulation(Stepper):
                 raise RuntimeError("an event was passed unseen")
         return duration
 
-    def miss(self, contact: Contact, event: float, y: Array) -> float:
+    def miss(self, contact, event, y):
         """What vanishes at the event: a level of |theta|, or a turn."""
         if event == TURN:
             return float(y[self.lagrangian.storeys + 1])
         return contact.side * float(y[0]) - event
 
-    def switch(self, contact: Contact, event: float, ground: LinearGround) -> None:
+    def switch(self, contact, event, ground):
         """What an event does to the contact, to the velocities and to the devices."""
         if event == TURN:
             self.turn(ground)
@@ -207,7 +196,7 @@ class _Simulation(Stepper):
         else:
             self.impact(contact, ground)
 
-    def turn(self, ground: LinearGround) -> None:
+    def turn(self, ground):
         """At rest for an instant, or for longer if friction holds what acts otherwise."""
         push = self.full_contact.push(self.ground_state(ground))
         gravity = self.lagrangian.system.gravity + ground.vertical
@@ -217,7 +206,7 @@ class _Simulation(Stepper):
                 return
         self.stuck = True
 
-    def impact(self, contact: Contact, ground: LinearGround) -> None:
+    def impact(self, contact, ground):
         motion, n1 = self.lagrangian, self.lagrangian.storeys + 1
         before = sum(motion.energies(contact, self.y))
         self.impacts += 1
@@ -230,7 +219,7 @@ class _Simulation(Stepper):
             self.contact = beyond
         self.energy_lost += before - sum(motion.energies(beyond, self.y))
 
-    def lock(self, beyond: Contact, back: float) -> None:
+    def lock(self, beyond, back):
         """Full contact instead of the endless rest of shrinking excursions."""
         motion, n1 = self.lagrangian, self.lagrangian.storeys + 1
         if motion.storeys > 0:
@@ -239,7 +228,7 @@ class _Simulation(Stepper):
         self.y[n1] = 0.0
         self.contact, self.step = None, np.inf
 
-    def left_out(self, beyond: Contact, back: float) -> float:
+    def left_out(self, beyond, back):
         """What excursions that are not followed add to the first drift rate, over u_b'.
 
         Between impacts absolute floor velocities stay, so each excursion of speed w turns
@@ -259,18 +248,18 @@ class _Simulation(Stepper):
 
 
 def simulate(
-    system: OracleSystem,
-    ag: Array,
-    dt: float,
+    system,
+    ag,
+    dt,
     *,
-    av: Array | None = None,
-    free_vibration: float = 10.0,
-    recontact_tolerance: float = 1e-6,
-    overturning_limit: float = 2.0,
-    rtol: float = 1e-10,
-    initial_rotation: float = 0.0,
-    devices: tuple[OracleDevice, ...] = (),
-) -> OracleResult:
+    av=None,
+    free_vibration=10.0,
+    recontact_tolerance=1e-6,
+    overturning_limit=2.0,
+    rtol=1e-10,
+    initial_rotation=0.0,
+    devices=(),
+):
     """Response to ground acceleration samples [m/s2], then to none for `free_vibration` seconds.
 
     The acceleration is linear between samples and drops to zero at the last one. It starts from

@@ -14,28 +14,25 @@ kappa = path/rim, `rim` being the distance of the contact from the axis. That is
 velocities: only the part of dJ/dtheta that leaves kappa alone acts (Theory, section 13).
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from .crossings import Array, Curve, Rates, Stepper
+from .crossings import Curve, Stepper
 from .devices import (
     Equipment,
     Friction,
-    OracleDevice,
     RollingResistance,
     Stop,
     Tendon,
     Viscous,
 )
 from .full_contact import FullContact
-from .storey_lagrangian import Contact, OracleSystem, StoreyLagrangian
+from .storey_lagrangian import Contact, StoreyLagrangian
 
 TIP = 1e-10
 _BEGINNING = 1e-12  # tilt at which an uplift is handed over to the integrator
@@ -57,7 +54,7 @@ class Section(NamedTuple):
 class SpatialDevices(Equipment):
     """Devices as forces on the Cartesian tilt; sums over all of a kind."""
 
-    def on_beam(self, rate: Array) -> Array:
+    def on_beam(self, rate):
         """Force against a velocity of the cap beam."""
         speed = math.hypot(*rate)
         if speed == 0.0:
@@ -70,9 +67,7 @@ class SpatialDevices(Equipment):
                 force += device.force
         return -force / speed * rate
 
-    def against_tilt(
-        self, x: float, shift: float, slope: float, rate: float, *, rolling: bool
-    ) -> float:
+    def against_tilt(self, x, shift, slope, rate, *, rolling):
         """Moment of stops and tendons against theta, which is at x."""
         moment = 0.0
         for k, device in enumerate(self.devices):
@@ -83,7 +78,7 @@ class SpatialDevices(Equipment):
                 moment += device.columns * self.tension(k, device, e) * growth
         return moment
 
-    def against_rolling(self, grows: float, swings: float) -> Array:
+    def against_rolling(self, grows, swings):
         """Moments against theta' and theta phi'."""
         moment = sum(
             self.rolling(d) for d in self.devices if isinstance(d, RollingResistance)
@@ -95,17 +90,10 @@ class SpatialDevices(Equipment):
 class SpatialLagrangian:
     """Masses and contact alike in x and y; stiffness and damping of each direction."""
 
-    def __init__(
-        self,
-        along_x: OracleSystem,
-        along_y: OracleSystem,
-        axial: float,
-        *,
-        integrated_spin: bool = False,
-    ) -> None:
+    def __init__(self, along_x, along_y, axial, *, integrated_spin=False):
         """`axial` is I_3/(m_c R^2); `integrated_spin` lets all of dJ/dtheta act, as the program."""
         self.integrated_spin = integrated_spin
-        self.devices: SpatialDevices | None = None
+        self.devices = None
         self.system, self.directions = along_x, (along_x, along_y)
         self.plane = StoreyLagrangian(along_x)
         self.storeys, self.critical_rotation = (
@@ -119,7 +107,7 @@ class SpatialLagrangian:
             between.T @ np.diag(way.stiffnesses) @ between for way in self.directions
         ]
 
-    def section(self, x: float, *, rolling: bool) -> Section:
+    def section(self, x, *, rolling):
         plane = self.plane
         _, slope, bend = plane.cap_beam(x, rolling=rolling)
         # as there, but 1 - exp(-i x) without its cancellation towards the tip of the cone
@@ -153,7 +141,7 @@ class SpatialLagrangian:
             kappa,
         )
 
-    def tilt_inertia(self, slope: complex) -> float:
+    def tilt_inertia(self, slope):
         """Of theta': floors ride along upwards alone."""
         plane = self.plane
         sideways = self.system.columns_mass / 4.0 + self.system.cap_beam_mass
@@ -163,9 +151,7 @@ class SpatialLagrangian:
             + plane.moving_mass * slope.imag**2
         )
 
-    def storey_forces(
-        self, floors: Array, rates: Array, beam: Array, beam_rate: Array
-    ) -> Array:
+    def storey_forces(self, floors, rates, beam, beam_rate):
         """K v + C v' of both directions, (2, n)."""
         forces = [
             spring @ (floors[i] - beam[i])
@@ -176,7 +162,7 @@ class SpatialLagrangian:
         ]
         return np.array(forces).reshape(2, self.storeys)
 
-    def accelerations(self, y: Array, ground: Array, *, rolling: bool) -> Array:
+    def accelerations(self, y, ground, *, rolling):
         """Of [X, Y, floors along x, floors along y] under `ground` = a_x, a_y, a_v."""
         n, half = self.storeys, len(y) // 2
         tilt, rate = y[:2], y[half : half + 2]
@@ -220,7 +206,7 @@ class SpatialLagrangian:
         out[2:] = (-forces / self.system.masses - ground[:2, None]).ravel()
         return out
 
-    def energy(self, y: Array, *, rolling: bool) -> float:
+    def energy(self, y, *, rolling):
         """Kinetic and potential energy [J] relative to the ground; zero at rest."""
         n, half = self.storeys, len(y) // 2
         floors, rates = y[2:half].reshape(2, n), y[half + 2 :].reshape(2, n)
@@ -258,18 +244,18 @@ class SpatialSimulation(Stepper):
 
     def __init__(
         self,
-        along_x: OracleSystem,
-        along_y: OracleSystem | None = None,
+        along_x,
+        along_y=None,
         *,
-        axial: float | None = None,
-        contact_time: float = 0.0,
-        recontact: float = 1e-6,
-        rtol: float = 1e-11,
-        limit: float = 2.0,
-        integrated_spin: bool = False,
-        begins_at: float | None = None,
-        devices: tuple[OracleDevice, ...] = (),
-    ) -> None:
+        axial=None,
+        contact_time=0.0,
+        recontact=1e-6,
+        rtol=1e-11,
+        limit=2.0,
+        integrated_spin=False,
+        begins_at=None,
+        devices=(),
+    ):
         """`begins_at`: uplifts start at rest at this tilt, not with the cube of the time."""
         along_y, self.begins_at = along_y or along_x, begins_at
         if axial is None:  # a solid round column as wide as its arcs
@@ -290,20 +276,20 @@ class SpatialSimulation(Stepper):
         sideways = along_x.columns_mass / 4.0 + along_x.cap_beam_mass
         self.going_round = plane.spin_inertia + sideways * slope.real**2  # K(0)
         self.lever = slope.real
-        self.y: Array = np.zeros(4 + 4 * plane.storeys)
+        self.y = np.zeros(4 + 4 * plane.storeys)
         self.standing, self.rolling, self.overturned = True, plane.beta > 0.0, False
         self.time = self.end = self.max_tilt = 0.0
         self.tolerance = np.full(len(self.y), 1e-3 * rtol)
         # towards the tip positions decide; rates have the rounding of theta'^2/theta in them
         self.tolerance[:2], self.tolerance[self.half :][:2] = 1e-6 * rtol, 1e-4 * rtol
-        self.uplifts: list[tuple[float, float]] = []
-        self.passes: list[Passed] = []
+        self.uplifts = []
+        self.passes = []
 
     @property
-    def half(self) -> int:
+    def half(self):
         return len(self.y) // 2
 
-    def release(self, tilt: tuple[float, float], rate: tuple[float, float]) -> None:
+    def release(self, tilt, rate):
         """With the springs at ease and the floors at the beam's velocity."""
         n, half = self.motion.storeys, self.half
         x = math.hypot(*tilt)
@@ -312,7 +298,7 @@ class SpatialSimulation(Stepper):
         beam, beam_rate = self.beam()
         self.y[2:half], self.y[half + 2 :] = np.repeat(beam, n), np.repeat(beam_rate, n)
 
-    def beam(self) -> tuple[Array, Array]:
+    def beam(self):
         """Displacement and velocity of the cap beam."""
         tilt, rate = self.y[:2], self.y[self.half : self.half + 2]
         x = math.hypot(*tilt)
@@ -325,7 +311,7 @@ class SpatialSimulation(Stepper):
 
     # full contact
 
-    def fixed_state(self, ground: Array, slope: Array, way: int) -> Array:
+    def fixed_state(self, ground, slope, way):
         n, half = self.motion.storeys, self.half
         floors, rates = (
             self.y[2:half].reshape(2, n)[way],
@@ -334,7 +320,7 @@ class SpatialSimulation(Stepper):
         drifts = np.diff(floors, prepend=0.0), np.diff(rates, prepend=0.0)
         return np.concatenate((*drifts, [ground[way], slope[way]]))
 
-    def margin(self, ground: Array, slope: Array, h: float) -> Array:
+    def margin(self, ground, slope, h):
         """Pushes of both directions and what holds, as polynomials of the time over h."""
         rows = []
         powers = h ** np.arange(_ORDER + 1)
@@ -353,7 +339,7 @@ class SpatialSimulation(Stepper):
         hold[0] += (held - active) / self.lever
         return np.array([*rows, hold])
 
-    def stand(self, ground: Array, slope: Array, duration: float) -> float:
+    def stand(self, ground, slope, duration):
         """Full contact until uplift or the end; returns the time that passed."""
         fastest = max(fixed.fastest for fixed in self.fixed)
         pieces = max(1, math.ceil(4.0 * duration * fastest))
@@ -373,7 +359,7 @@ class SpatialSimulation(Stepper):
             self.stay(here, slope, h)
         return duration
 
-    def stay(self, ground: Array, slope: Array, tau: float) -> None:
+    def stay(self, ground, slope, tau):
         """The building on its fixed base for a time tau."""
         n, half = self.motion.storeys, self.half
         for way, fixed in enumerate(self.fixed):
@@ -381,7 +367,7 @@ class SpatialSimulation(Stepper):
             self.y[2:half].reshape(2, n)[way] = np.cumsum(z[:n])
             self.y[half + 2 :].reshape(2, n)[way] = np.cumsum(z[n : 2 * n])
 
-    def lift(self, ground: Array, slope: Array, left: float) -> float:
+    def lift(self, ground, slope, left):
         """The first instants of an uplift: along the push, by its excess m_0 + m_1 t."""
         push_x, push_y, hold = self.margin(ground, slope, 1.0)
         size = math.hypot(push_x[0], push_y[0])
@@ -409,23 +395,23 @@ class SpatialSimulation(Stepper):
 
     # tilted
 
-    def rates(self, ground: Array, slope: Array) -> Rates:
+    def rates(self, ground, slope):
         rolling, half = self.rolling, self.half
 
-        def rates(tau: float, y: Any) -> Any:
+        def rates(tau, y):
             moved = self.motion.accelerations(y, ground + slope * tau, rolling=rolling)
             return np.concatenate((y[half:], moved))
 
         return rates
 
-    def curves(self, y: Array) -> Array:
+    def curves(self, y):
         """theta and theta theta' of states in columns."""
         half = self.half
         return np.array(
             [np.hypot(y[0], y[1]), y[0] * y[half] + y[1] * y[half + 1]],
         )
 
-    def tilted(self, ground: Array, slope: Array, duration: float) -> float:
+    def tilted(self, ground, slope, duration):
         """Tilted until an event or the end; returns the time that passed."""
         rates, levels = (
             self.rates(ground, slope),
@@ -458,12 +444,12 @@ class SpatialSimulation(Stepper):
                 return tau
         return duration
 
-    def miss(self, kind: str, y: Array) -> float:
+    def miss(self, kind, y):
         theta, moving = self.curves(y)
         level = {"limit": self.limit, "tip": TIP, "phase": self.plane.beta}
         return float(moving if kind in ("pass", "turn") else theta - level[kind])
 
-    def switch(self, kind: str, ground: Array, slope: Array, time: float) -> None:
+    def switch(self, kind, ground, slope, time):
         if kind == "phase":
             self.rolling = not self.rolling
         elif kind == "limit":
@@ -475,21 +461,21 @@ class SpatialSimulation(Stepper):
         else:
             self.cross(ground, slope, time)
 
-    def share_lost(self, tilt: float, rate: float) -> float:
+    def share_lost(self, tilt, rate):
         """l(s) of Theory, section 13."""
         if self.contact_time == 0.0 or rate == 0.0:
             return 0.0
         s = tilt / (rate * self.contact_time)
         return float(1.0 / (1.0 + 3.5 * s**1.04 + 2.0 * s**2.7))
 
-    def spare_turn(self) -> float:
+    def spare_turn(self):
         return math.pi * (math.sqrt(self.falling / self.going_round) - 1.0)
 
-    def tilt_and_rate(self) -> tuple[complex, complex]:
+    def tilt_and_rate(self):
         x, v = self.y[:2], self.y[self.half :][:2]
         return complex(x[0], x[1]), complex(v[0], v[1])
 
-    def approach(self, ground: Array, slope: Array, time: float) -> None:
+    def approach(self, ground, slope, time):
         """What the closest approach loses, and whether the storey comes down there."""
         z, rate = self.tilt_and_rate()
         tilt = abs(z)
@@ -500,7 +486,7 @@ class SpatialSimulation(Stepper):
         beyond = Passed(time, tilt, share, self.going_round * around**2)
         self.go_on(ground, slope, beyond, tilt * out, 1j * around * out)
 
-    def cross(self, ground: Array, slope: Array, time: float) -> None:
+    def cross(self, ground, slope, time):
         """Across the tip of the cone, unrolled: a straight line at the distance `near`."""
         z, rate = self.tilt_and_rate()
         tilt = abs(z)
@@ -520,9 +506,7 @@ class SpatialSimulation(Stepper):
         beyond = Passed(time, near, share, self.falling * speed**2)
         self.go_on(ground, slope, beyond, tilt * out, (-radial + 1j * around) * out)
 
-    def go_on(
-        self, ground: Array, slope: Array, passed: Passed, z: complex, rate: complex
-    ) -> None:
+    def go_on(self, ground, slope, passed, z, rate):
         """From a pass; so far its `lost` is twice the kinetic energy of the tilt without loss."""
         before, kept = self.motion.energy(self.y, rolling=self.rolling), 1.0
         kept -= passed.share * (1.0 - self.restitution**2)
@@ -532,9 +516,7 @@ class SpatialSimulation(Stepper):
         passed.lost = before - self.motion.energy(self.y, rolling=self.rolling)
         self.passes.append(passed)
 
-    def come_down(
-        self, ground: Array, slope: Array, tilt: float, twice_energy: float
-    ) -> None:
+    def come_down(self, ground, slope, tilt, twice_energy):
         """Full contact if neither this pass nor the next swing would be seen."""
         push_x, push_y, hold = self.margin(ground, slope, 1.0)
         spare = hold[0] - math.hypot(push_x[0], push_y[0])
@@ -543,7 +525,7 @@ class SpatialSimulation(Stepper):
             self.y[:2] = self.y[self.half : self.half + 2] = 0.0
             self.standing = True
 
-    def advance(self, ground: Array, slope: Array, duration: float) -> None:
+    def advance(self, ground, slope, duration):
         """Through one interval in which the ground is linear."""
         tau, self.end = 0.0, self.time + duration
         while duration - tau > 1e-13 * duration and not self.overturned:
@@ -552,9 +534,7 @@ class SpatialSimulation(Stepper):
         self.time = self.end
 
 
-def simulate_pair(
-    simulation: SpatialSimulation, ground: Array, dt: float, duration: float
-) -> Array:
+def simulate_pair(simulation, ground, dt, duration):
     """States at the samples of `ground` (3, m: a_x, a_y, a_v), which is zero after the last one."""
     states = [simulation.y.copy()]
     for j in range(round(duration / dt)):

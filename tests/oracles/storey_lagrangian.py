@@ -8,8 +8,6 @@ w = u + i v = 2 [r x + q (1 - exp(-i x))], and on the arc's end P = p(beta) by
 w = 2 [B + r beta - i H - P exp(-i x)]. The left side is the mirror image.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from dataclasses import dataclass
@@ -58,7 +56,7 @@ class Contact:
 class StoreyLagrangian:
     """T = 1/2 q'^T M(q) q' and the generalised forces for q = [theta, d_1 ... d_n]."""
 
-    def __init__(self, system: OracleSystem) -> None:
+    def __init__(self, system):
         self.system = system
         n = self.storeys = len(system.masses)
         self.half_height = system.R / math.hypot(1.0, system.tan_alpha)
@@ -82,14 +80,14 @@ class StoreyLagrangian:
         self.drift_damping = summation.T @ system.damping_matrix @ summation
 
     @cached_property
-    def critical_rotation(self) -> float:
+    def critical_rotation(self):
         """Tilt at which the lift v_b of the cap beam is largest, on the branch that is reached."""
         on_arc = cmath.phase(1j * self.arc_frame)  # Re(q exp(-i x)) = 0
         if 0.0 < on_arc < self.beta:
             return on_arc
         return cmath.phase(1j * self.arc_end)
 
-    def cap_beam(self, x: float, *, rolling: bool) -> tuple[complex, complex, complex]:
+    def cap_beam(self, x, *, rolling):
         """w(x), dw/dx and d2w/dx2 [m] of the right-hand side, x = |theta|."""
         turn = cmath.exp(-1j * x)
         if rolling:
@@ -105,7 +103,7 @@ class StoreyLagrangian:
         )
         return start - arm * turn, 1j * arm * turn, arm * turn
 
-    def mass_matrix(self, slope: complex) -> Array:
+    def mass_matrix(self, slope):
         """M(q), shape (n+1, n+1), where dw/dx = `slope`."""
         matrix = np.empty((self.storeys + 1, self.storeys + 1))
         matrix[0, 0] = self.spin_inertia + self.moving_mass * abs(slope) ** 2
@@ -113,9 +111,7 @@ class StoreyLagrangian:
         matrix[1:, 1:] = self.drift_mass
         return matrix
 
-    def acceleration(
-        self, contact: Contact, y: Array, a_g: float, gravity: float, moment: float = 0.0
-    ) -> Array:
+    def acceleration(self, contact, y, a_g, gravity, moment=0.0):
         """q'' of the uplifted system under another moment on theta; y = [q, q', ...].
 
         `gravity` includes the ground's vertical a_v.
@@ -138,7 +134,7 @@ class StoreyLagrangian:
             np.linalg.solve(self.mass_matrix(slope), force), dtype=np.float64
         )
 
-    def energies(self, contact: Contact, y: Array) -> tuple[float, float]:
+    def energies(self, contact, y):
         """Kinetic and potential energy [J] relative to the ground; both zero at rest."""
         n = self.storeys
         rate = y[n + 1 : 2 * n + 2]
@@ -150,7 +146,7 @@ class StoreyLagrangian:
         return kinetic, springs + self.lifted_mass * self.system.gravity * shift.imag
 
     @cached_property
-    def restitution(self) -> float:
+    def restitution(self):
         """theta'+ / theta'- at theta = 0.
 
         Unknowns: theta'+ and the impulses (X, Y) that the new lower and upper edge give to the
@@ -180,7 +176,7 @@ class StoreyLagrangian:
         rows[3, 3] = rows[4, 4] = 1.0
         return float(np.linalg.solve(rows, before)[0])
 
-    def after_impact(self, y: Array) -> Array:
+    def after_impact(self, y):
         """State just after theta = 0: tilt reset to zero, velocities by the impact law."""
         n = self.storeys
         after = y.copy()

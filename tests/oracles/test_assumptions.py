@@ -4,8 +4,6 @@ Bodies in contact that do otherwise than the model assumes, beside the program: 
 with most energy of records of FEMA P695, two columns under a building of the paper.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from importlib.util import find_spec
 from typing import Any, NamedTuple
@@ -13,21 +11,17 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 from paper_structures import (
-    RecordLoader,
     needs_compiled_kernels,
     oracle_system,
     part,
     podium,
 )
 
-from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.impact import ImpactLaw
-from rpscli.model.podium import PodiumStructure
-from rpscli.records.ground_motion import GroundMotion
 
-from .multibody import Departures, MultibodyResult, simulate, turning_points
+from .multibody import Departures, simulate, turning_points
 from .resolved_contact import WINDOW, strongest
 from .resolved_contact import structure_of as long_arcs
 from .storey_lagrangian import StoreyLagrangian
@@ -47,7 +41,7 @@ SCALES = {0.15: 1.0, 0.30: 1.5, 0.40: 2.0}
 PLASTIC = {"closing_damping": 4.0}
 """Contacts that stay closed; critically damped ones part again with 0.135 of the velocity."""
 
-TILTING: dict[str, Any] = {"level": False}
+TILTING = {"level": False}
 FLOORS_ABOVE = Departures(storey_height=3.0, spacing=12.0)
 FAR, NEAR, LATE = "farfield/1/b", "nearfield_pulse/9/a", "farfield/6/a"
 
@@ -116,27 +110,20 @@ WALKS = (
 )
 
 
-def structure_of(tan_alpha: float, rho: float, storeys: int) -> PodiumStructure:
+def structure_of(tan_alpha, rho, storeys):
     """Of the paper, with arcs that no motion leaves, and the law `flexible`."""
     made = long_arcs(str(storeys), rho, tan_alpha)
     return replace(made, impact_law=ImpactLaw())
 
 
-def followed(
-    record: GroundMotion, factor: float, start: float | None = None
-) -> GroundMotion:
+def followed(record, factor, start=None):
     """Of a record what is followed, from an instant [s] or where its energy is."""
     if start is None:
         return strongest(record, WINDOW).scaled(factor)
     return part(record, start, WINDOW, factor)
 
 
-def both(
-    structure: PodiumStructure,
-    motion: GroundMotion,
-    departures: Departures,
-    options: dict[str, Any],
-) -> tuple[MultibodyResult, TimeHistoryResult]:
+def both(structure, motion, departures, options):
     """Bodies and the program under one motion."""
     system = oracle_system(structure)
     bodies = simulate(
@@ -146,7 +133,7 @@ def both(
     return bodies, time_history(structure, motion, settings, with_fixed_base=False)
 
 
-def change(bodies: MultibodyResult, ours: TimeHistoryResult) -> tuple[float, float]:
+def change(bodies, ours):
     """Of the largest rotation and the base shear, in per cent of the program's."""
     assert ours.structure.superstructure is not None
     shear = (
@@ -158,7 +145,7 @@ def change(bodies: MultibodyResult, ours: TimeHistoryResult) -> tuple[float, flo
     )
 
 
-def slips(structure: PodiumStructure, bodies: MultibodyResult) -> tuple[float, float]:
+def slips(structure, bodies):
     """Largest at the feet and at the heads of the columns [m]: what rolling does not explain."""
     storey, found = StoreyLagrangian(oracle_system(structure)), np.zeros(2)
     rolling = structure.bearing.curvature_ratio > 0.0
@@ -172,7 +159,7 @@ def slips(structure: PodiumStructure, bodies: MultibodyResult) -> tuple[float, f
 
 
 @pytest.mark.parametrize("size", SIZES, ids=lambda s: f"{s.assumption}, {s.record}")
-def test_sizes(size: Size, fema_record: RecordLoader) -> None:
+def test_sizes(size, fema_record):
     structure = structure_of(size.tan_alpha, size.rho, size.storeys)
     motion = followed(fema_record(size.record), SCALES[size.tan_alpha], size.start)
     bodies, ours = both(structure, motion, size.departures, size.options)
@@ -184,9 +171,7 @@ def test_sizes(size: Size, fema_record: RecordLoader) -> None:
 
 
 @pytest.mark.parametrize("walk", WALKS, ids=lambda w: f"{w.tan_alpha}, {w.record}")
-def test_contacts_that_rebound_let_the_beam_walk(
-    walk: Walk, fema_record: RecordLoader
-) -> None:
+def test_contacts_that_rebound_let_the_beam_walk(walk, fema_record):
     structure = structure_of(walk.tan_alpha, 0.5, 3)
     motion = followed(fema_record(walk.record), SCALES[walk.tan_alpha])
     bodies, ours = both(structure, motion, Departures(), {})
@@ -207,12 +192,8 @@ def test_contacts_that_rebound_let_the_beam_walk(
     ],
 )
 def test_less_friction_than_tan_alpha_makes_a_sliding_isolator(
-    tan_alpha: float,
-    record: str,
-    base_shear: float,
-    slip: float,
-    fema_record: RecordLoader,
-) -> None:
+    tan_alpha, record, base_shear, slip, fema_record
+):
     """At exactly tan(alpha) columns slide and turn at once, and half the step is another motion."""
     structure = structure_of(tan_alpha, 0.5, 3)
     motion = followed(fema_record(record), SCALES[tan_alpha])
@@ -231,10 +212,7 @@ def test_less_friction_than_tan_alpha_makes_a_sliding_isolator(
         (LATE, (-2.7, 2.2), 0.1, 0.2),
     ],
 )
-def test_columns_of_different_height(
-    record: str, columns: tuple[float, float], base_shear: float, tilt: float,
-    fema_record: RecordLoader,
-) -> None:  # fmt: skip
+def test_columns_of_different_height(record, columns, base_shear, tilt, fema_record):
     """By 5 %, 12 m apart on level footings; the tilt of the beam is in mrad."""
     structure = structure_of(0.15, 0.5, 3)
     more = 0.05 * structure.bearing.half_height
@@ -251,12 +229,12 @@ def test_columns_of_different_height(
 
 
 @pytest.mark.parametrize("storeys", [3, 6])
-def test_vertical_vibration_hardly_changes_the_next_swings(storeys: int) -> None:
+def test_vertical_vibration_hardly_changes_the_next_swings(storeys):
     """After a release; over the first two swings of floors that ride on the beam."""
     structure = structure_of(0.15, 0.5, storeys)
     system, released = oracle_system(structure), 0.4 * structure.bearing.alpha
 
-    def tops(period: float | None) -> Any:
+    def tops(period):
         found = simulate(
             system,
             np.zeros(2),
@@ -281,13 +259,7 @@ def test_vertical_vibration_hardly_changes_the_next_swings(storeys: int) -> None
         (3, 0.30, 2.00, 2.93),
     ],
 )
-def test_demands_of_far_field_records(
-    storeys: int,
-    tan_alpha: float,
-    median: float,
-    largest: float,
-    fema_record: RecordLoader,
-) -> None:
+def test_demands_of_far_field_records(storeys, tan_alpha, median, largest, fema_record):
     """Friction that columns need, over tan(alpha), and base shears over V_st, by the program."""
     structure = podium(storeys, tan_alpha, law=ImpactLaw())
     friction, shear = [], []

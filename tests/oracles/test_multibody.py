@@ -5,17 +5,13 @@ own. On a round column contacts close within 0.08 ms; passes of its motions take
 lose nothing.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from paper_structures import (
-    RecordLoader,
     known,
     needs_compiled_kernels,
     oracle_system,
@@ -28,17 +24,16 @@ from two_components import frame, part_of_pair
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import denser_trace, time_history
 from rpscli.constants import STANDARD_GRAVITY
-from rpscli.model.impact import ImpactKind, ImpactLaw
+from rpscli.model.impact import ImpactLaw
 from rpscli.model.superstructure import RayleighDamping
 
-from .crossings import Array
-from .devices import Friction, OracleDevice, RollingResistance, Stop, Tendon, Viscous
+from .devices import Friction, RollingResistance, Stop, Tendon, Viscous
 from .multibody import inertia_ratios, simulate, turning_points
 from .multibody import simulate_pair as simulate_bodies
 from .resolved_contact import LAWS, structure_of
 from .second_integrator import simulate as integrated
 from .spatial_integrator import SpatialSimulation, simulate_pair
-from .storey_lagrangian import OracleSystem, StoreyLagrangian
+from .storey_lagrangian import StoreyLagrangian
 
 pytest.importorskip(
     "mujoco", reason="the physics engine is not installed: pip install rpscli[contact]"
@@ -52,7 +47,7 @@ STILL = np.zeros(2)
 @pytest.mark.evidence("impact laws", "program")
 @pytest.mark.parametrize("rho", [0.0, 0.5, 1.5])
 @pytest.mark.parametrize("building", ["block", "frame"])
-def test_restitution_from_the_heights_of_swings(building: str, rho: float) -> None:
+def test_restitution_from_the_heights_of_swings(building, rho):
     """e^2 is the ratio of lifts before and after an impact where nothing else takes energy."""
     structure = structure_of(building, rho)
     columns = 1 if building == "block" else 2
@@ -67,9 +62,7 @@ def test_restitution_from_the_heights_of_swings(building: str, rho: float) -> No
     )
 
 
-def differences(
-    building: str, rho: float, *, level: bool = True, closing_damping: float = 1.0
-) -> dict[ImpactKind, float]:
+def differences(building, rho, *, level=True, closing_damping=1.0):
     """Root mean square difference of each law after a release, over the tilt at its start."""
     structure = structure_of(building, rho)
     resolved = simulate(
@@ -77,7 +70,7 @@ def differences(
         closing_damping=closing_damping,
     )  # fmt: skip
     settings = TimeHistorySettings(free_vibration=2.4, initial_rotation=RELEASED)
-    found: dict[ImpactKind, float] = {}
+    found = {}
     for law in LAWS:
         ours = replace(structure, impact_law=ImpactLaw(law))
         trace = time_history(ours, stillness(2e-3), settings, with_fixed_base=False).trace
@@ -89,7 +82,7 @@ def differences(
 @pytest.mark.evidence("impact laws", "program")
 @pytest.mark.parametrize("rho", [0.0, 0.5])
 @pytest.mark.parametrize("building", ["1", "3", "6"])
-def test_floors_do_not_jump_with_the_beam(building: str, rho: float) -> None:
+def test_floors_do_not_jump_with_the_beam(building, rho):
     found = differences(building, rho)
     # contacts have a width: impacts last 0.1 ms, and columns are apart for a few after them
     assert found["flexible"] < 6e-4
@@ -97,7 +90,7 @@ def test_floors_do_not_jump_with_the_beam(building: str, rho: float) -> None:
 
 
 @pytest.mark.evidence("impact laws", "program")
-def test_the_columns_part_under_a_beam_that_may_tilt_where_contacts_rebound() -> None:
+def test_the_columns_part_under_a_beam_that_may_tilt_where_contacts_rebound():
     """Equal columns under a beam that may tilt receive equal impulses if contacts stay closed."""
     level, tilting = differences("6", 0.0), differences("6", 0.0, level=False)
     assert tilting["flexible"] > 3.0 * level["flexible"]
@@ -110,7 +103,7 @@ def test_the_columns_part_under_a_beam_that_may_tilt_where_contacts_rebound() ->
 
 
 @pytest.mark.evidence("impact laws", "program")
-def test_blocks_of_the_table_of_the_verification(tmp_path: Path) -> None:
+def test_blocks_of_the_table_of_the_verification(tmp_path):
     """The command of its section 11, which takes twenty minutes for all rows."""
     (line,) = (
         line for line in of_blocks(VERIFICATION) if "oracles.resolved_contact" in line
@@ -137,7 +130,7 @@ def test_blocks_of_the_table_of_the_verification(tmp_path: Path) -> None:
 W = structure_of("3", 0.5).weight
 F_0 = structure_of("3", 0.5).uplift_force
 
-KINDS: dict[str, tuple[OracleDevice, ...]] = {
+KINDS = {
     "none": (),
     "damper": (Viscous(0.3 * F_0),),
     "friction": (Friction(0.3 * F_0),),
@@ -154,20 +147,13 @@ KINDS: dict[str, tuple[OracleDevice, ...]] = {
 }
 
 
-def pulse(peak: float, period: float, dt: float) -> Array:
+def pulse(peak, period, dt):
     return np.asarray(
         peak * np.sin(2.0 * math.pi * np.arange(round(period / dt) + 1) * dt / period)
     )
 
 
-def gap(
-    system: OracleSystem,
-    ag: Array,
-    dt: float,
-    duration: float,
-    devices: tuple[OracleDevice, ...],
-    released: float = 0.0,
-) -> float:
+def gap(system, ag, dt, duration, devices, released=0.0):
     """Largest difference of the rotations over the largest rotation."""
     found = simulate(system, ag, dt, duration, initial_rotation=released, devices=devices)
     ours = integrated(
@@ -187,7 +173,7 @@ def gap(
 @pytest.mark.evidence("devices", "program")
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize(("building", "rho"), [("3", 0.5), ("3", 1.5), ("frame", 0.0)])
-def test_devices_after_a_release(building: str, rho: float, kind: str) -> None:
+def test_devices_after_a_release(building, rho, kind):
     system = replace(oracle_system(structure_of(building, rho)), law="flexible")
     # contacts that close within 0.1 ms, as without devices
     assert gap(system, np.zeros(2), 2e-3, 1.6, KINDS[kind], RELEASED) < 1e-3
@@ -195,7 +181,7 @@ def test_devices_after_a_release(building: str, rho: float, kind: str) -> None:
 
 @pytest.mark.evidence("devices", "program")
 @pytest.mark.parametrize("rho", [0.5, 1.5])
-def test_rolling_resistance_with_the_normal_forces_of_each_instant(rho: float) -> None:
+def test_rolling_resistance_with_the_normal_forces_of_each_instant(rho):
     system = replace(oracle_system(structure_of("3", rho)), law="flexible")
     # the program takes them static: some per cent of the resistance, itself a tenth of F_0; until
     # the impact, after which columns in the engine do not come down together
@@ -220,7 +206,7 @@ def test_rolling_resistance_with_the_normal_forces_of_each_instant(rho: float) -
 @pytest.mark.parametrize(
     "kind", [kind for kind in KINDS if kind != "friction that holds"]
 )
-def test_devices_under_a_pulse(kind: str) -> None:
+def test_devices_under_a_pulse(kind):
     system = replace(oracle_system(structure_of("3", 0.5)), law="flexible")
     record = pulse(3.5, 0.8, 0.004)
     assert gap(system, record, 0.004, 1.6, KINDS[kind]) < 0.01
@@ -229,9 +215,7 @@ def test_devices_under_a_pulse(kind: str) -> None:
 @pytest.mark.evidence("floors on vertical springs", "program")
 @pytest.mark.parametrize("building", ["3", "6"])
 @pytest.mark.parametrize("period", [0.1, 0.15, 0.25])
-def test_floors_on_vertical_springs(
-    building: str, period: float, fema_record: RecordLoader
-) -> None:
+def test_floors_on_vertical_springs(building, period, fema_record):
     """Where contacts hold; the engine damps its chain of floors in proportion to stiffness."""
     record = part(fema_record("farfield/1/b"), 2.0, 8.0)
     structure = replace(structure_of(building, 0.5), impact_law=ImpactLaw())
@@ -269,7 +253,7 @@ def test_floors_on_vertical_springs(
 RATIO, AXIAL = inertia_ratios(0.15)
 
 
-def round_structure(storeys: int, damping: float = 0.0) -> OracleSystem:
+def round_structure(storeys, damping=0.0):
     """Flat ends; damping of the first mode in proportion to stiffness."""
     made = frame(storeys, float(storeys), 0.3)
     system = replace(oracle_system(made), law="rigid", inertia_ratio=RATIO)
@@ -279,25 +263,19 @@ def round_structure(storeys: int, damping: float = 0.0) -> OracleSystem:
     return replace(system, damping_matrix=damping * 0.3 / np.pi * springs)
 
 
-def distances(
-    along_x: OracleSystem,
-    along_y: OracleSystem,
-    ground: Array,
-    dt: float,
-    duration: float,
-) -> tuple[Array, SpatialSimulation]:
+def distances(along_x, along_y, ground, dt, duration):
     """Between both programs at the samples, over the largest tilt."""
     time, bodies = simulate_bodies(along_x, along_y, ground, dt, duration)
     run = SpatialSimulation(along_x, along_y, axial=AXIAL, rtol=1e-9)
     states = simulate_pair(run, ground, dt, duration)
     at = np.searchsorted(time, dt * np.arange(len(states)) - 1e-9)
-    gap: Array = np.hypot(*(bodies[at] - states[:, :2]).T) / run.max_tilt
+    gap = np.hypot(*(bodies[at] - states[:, :2]).T) / run.max_tilt
     return gap, run
 
 
 @pytest.mark.evidence("both components", "program")
 @pytest.mark.parametrize("building", ["column", "frame", "three", "three, soft in y"])
-def test_two_pulses_on_a_round_column(building: str) -> None:
+def test_two_pulses_on_a_round_column(building):
     dt = 0.01
     ground = np.zeros((3, 120))
     for way, (peak, period, first) in enumerate([(0.25, 0.6, 2), (0.21, 0.7, 12)]):
@@ -323,9 +301,7 @@ def test_two_pulses_on_a_round_column(building: str) -> None:
 
 @pytest.mark.evidence("both components", "program")
 @pytest.mark.parametrize(("pair", "start"), [(1, 2.0), (7, 3.0), (8, 9.0)])
-def test_recorded_pairs_on_a_round_column(
-    pair: int, start: float, fema_record: RecordLoader
-) -> None:
+def test_recorded_pairs_on_a_round_column(pair, start, fema_record):
     """Three storeys without damping, until small differences have grown."""
     row = {"pair": pair, "t0": start, "T": 6.0, "scale": 1.0}
     motion = part_of_pair(row, fema_record)

@@ -3,40 +3,32 @@
 Closed forms that it shares with the program stand in `certified`, where it is the first road.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
-from typing import Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
 from paper_structures import (
-    RecordLoader,
     known,
     needs_compiled_kernels,
     oracle_system,
     podium,
 )
 from shown_commands import VERIFICATION, table
-from two_components import History, followed, frame, pair, part_of_pair
+from two_components import followed, frame, pair, part_of_pair
 
 from rpscli.analyses.settings import TimeHistorySettings
-from rpscli.model.podium import PodiumStructure
 
-from .crossings import Array
 from .second_integrator import _Simulation, simulate
 from .spatial_integrator import SpatialLagrangian, SpatialSimulation, simulate_pair
-from .storey_lagrangian import OracleSystem
 
 
 @pytest.mark.parametrize(
     ("law", "restitution"),
     [("rigid", 0.7), pytest.param("flexible", 0.5, marks=pytest.mark.long)],
 )
-def test_locking_needs_no_small_tolerance(
-    law: Literal["rigid", "flexible"], restitution: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_locking_needs_no_small_tolerance(law, restitution, monkeypatch):
     system = replace(
         oracle_system(podium(2, 0.15, 0.0)), law=law, restitution=restitution
     )
@@ -51,7 +43,7 @@ def test_locking_needs_no_small_tolerance(
     )
 
 
-def drifts_at_the_end(system: OracleSystem, tolerance: float) -> Array:
+def drifts_at_the_end(system, tolerance):
     """Drifts at the last samples, upright, after a release from 0.02 rad."""
     result = simulate(
         system,
@@ -91,7 +83,7 @@ ROWS = [
     ],
     ids=lambda row: f"{row.record}-{row.storeys}-{row.rho}",
 )
-def test_earthquakes(row: Row, fema_record: RecordLoader) -> None:
+def test_earthquakes(row, fema_record):
     """Digits that a hundredth of the tolerance leaves alone."""
     structure = podium(row.storeys, row.tan_alpha, row.rho)
     record = fema_record(row.record)
@@ -109,7 +101,7 @@ UPWARDS = np.array([0.0, 0.0, 1.0])
 class Column:
     """Where a column is and how fast it turns, from geometry alone."""
 
-    def __init__(self, motion: SpatialLagrangian, tilt: Array, rate: Array) -> None:
+    def __init__(self, motion, tilt, rate):
         plane = motion.plane
         x = math.hypot(tilt[0], tilt[1])
         outwards = np.r_[tilt / x, 0.0]
@@ -131,7 +123,7 @@ class Column:
 
 @pytest.mark.evidence("both components", "exact")
 @pytest.mark.parametrize("rho", [0.0, 0.4, 0.5, 1.5])
-def test_newton_and_euler_agree_with_lagrange(rho: float) -> None:
+def test_newton_and_euler_agree_with_lagrange(rho):
     """Moments about columns leave a torsion whose work is none, and nothing else.
 
     Differences over 2e-5 s err by 1e-10 of the third derivatives and 1e-16/1e-10 of positions.
@@ -205,14 +197,7 @@ CASES = {
 }  # fmt: skip
 
 
-def both(
-    case: Shaken,
-    contact_time: float,
-    accuracy: float,
-    fema_record: RecordLoader,
-    seconds: float = 3.0,
-    **options: Any,
-) -> tuple[Array, SpatialSimulation, History]:
+def both(case, contact_time, accuracy, fema_record, seconds=3.0, **options):
     """Distances of the tilts at the samples [rad], and both histories."""
     row = {"pair": case.pair, "scale": case.scale, "t0": case.start, "T": seconds}
     motion = part_of_pair(row, fema_record)
@@ -230,7 +215,7 @@ def both(
         pair(ground[0], ground[1], dt, ground[2] if case.upwards else None),
         TimeHistorySettings(free_vibration=0.0, accuracy=accuracy),
     )
-    across: PodiumStructure = structure
+    across = structure
     if structure.superstructure_y is not None:
         across = replace(
             structure, superstructure=structure.superstructure_y, superstructure_y=None
@@ -251,7 +236,7 @@ def both(
     )
 
 
-def as_the_program(case: Shaken, *of: Any, **options: Any) -> float:
+def as_the_program(case, *of, **options):
     """The largest difference if uplifts begin alike and the spin on arcs integrates."""
     gap, run, ours = both(case, *of, integrated_spin=True, begins_at=1e-9, **options)
     assert run.max_tilt > 0.01
@@ -262,7 +247,7 @@ def as_the_program(case: Shaken, *of: Any, **options: Any) -> float:
 
 @needs_compiled_kernels
 @pytest.mark.evidence("both components", "program")
-def test_a_frame_over_two_seconds(fema_record: RecordLoader) -> None:
+def test_a_frame_over_two_seconds(fema_record):
     assert as_the_program(CASES["frame"], 2e-3, 4.0, fema_record, seconds=2.0) < 1e-9
 
 
@@ -271,9 +256,7 @@ def test_a_frame_over_two_seconds(fema_record: RecordLoader) -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("contact_time", [0.0, 2e-3])
 @pytest.mark.parametrize("case", CASES.values(), ids=CASES)
-def test_three_seconds(
-    case: Shaken, contact_time: float, fema_record: RecordLoader
-) -> None:
+def test_three_seconds(case, contact_time, fema_record):
     assert as_the_program(case, contact_time, 4.0, fema_record) < 1e-9  # 1e-12 are found
     assert as_the_program(case, contact_time, 1.0, fema_record) < 1e-6
 
@@ -282,7 +265,7 @@ def test_three_seconds(
 @pytest.mark.evidence("both components", "program")
 @pytest.mark.long
 @pytest.mark.parametrize("case", CASES.values(), ids=CASES)
-def test_what_the_program_leaves_out(case: Shaken, fema_record: RecordLoader) -> None:
+def test_what_the_program_leaves_out(case, fema_record):
     """Uplifts that begin with the cube of the time, and a spin on arcs that does not integrate."""
     gap, _, _ = both(case, 2e-3, 4.0, fema_record)
     # a frame that passes upright at 5e-6 rad within 0.1 s of its uplift; others 3e-8

@@ -1,7 +1,5 @@
 """Whole histories against an integrator of other unknowns, other steps and another event search."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -10,7 +8,6 @@ import pytest
 from oracles.second_integrator import simulate
 from paper_structures import (
     FLAT,
-    RecordLoader,
     building,
     needs_compiled_kernels,
     oracle_devices,
@@ -20,7 +17,6 @@ from paper_structures import (
     waves,
 )
 
-from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.devices import (
@@ -31,9 +27,8 @@ from rpscli.model.devices import (
     ViscousDamper,
 )
 from rpscli.model.impact import ImpactLaw
-from rpscli.model.podium import Device, PodiumStructure
+from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import ModalDamping, RayleighDamping
-from rpscli.records.ground_motion import GroundMotion
 
 pytestmark = needs_compiled_kernels
 
@@ -74,13 +69,7 @@ CASES = {
 }
 
 
-def agree(
-    structure: PodiumStructure,
-    record: GroundMotion,
-    vertical: GroundMotion | None,
-    free_vibration: float,
-    tolerance: float,
-) -> TimeHistoryResult:
+def agree(structure, record, vertical, free_vibration, tolerance):
     """Compare two histories; returns the program's own."""
     settings = TimeHistorySettings(free_vibration=free_vibration, accuracy=4.0)
     result = time_history(
@@ -129,7 +118,7 @@ def agree(
 
 @pytest.mark.evidence("buildings on bearings under earthquakes", "program")
 @pytest.mark.parametrize("name", CASES)
-def test_both_roads_lead_to_the_same_history(name: str) -> None:
+def test_both_roads_lead_to_the_same_history(name):
     structure, peak, shaken_upwards = CASES[name]
     record = waves(1.6, DT, peak * structure.uplift_acceleration, seed=len(name))
     vertical = waves(1.6, DT, 3.0, seed=99) if shaken_upwards else None
@@ -137,10 +126,10 @@ def test_both_roads_lead_to_the_same_history(name: str) -> None:
     assert agree(structure, record, vertical, 0.6, 1e-7).impacts >= 1
 
 
-def with_devices(structure: PodiumStructure, *kinds: str) -> PodiumStructure:
+def with_devices(structure, *kinds):
     """The structure with devices that matter to it."""
     F, W, B = structure.uplift_force, structure.weight, structure.bearing.half_width
-    known: dict[str, Device] = {
+    known = {
         "linear damper": ViscousDamper(0.4 * F),
         "damper of 0.5": ViscousDamper(0.3 * F, 0.5),
         "damper of 1.6": ViscousDamper(0.5 * F, 1.6),
@@ -194,7 +183,7 @@ QUICK = {
         for names in EQUIPPED
     ],
 )
-def test_both_roads_with_devices(names: str) -> None:
+def test_both_roads_with_devices(names):
     bare, peak = EQUIPPED[names]
     structure = with_devices(bare, *names.split(", "))
     record = waves(1.6, DT, peak * structure.uplift_acceleration, seed=len(names))
@@ -221,7 +210,7 @@ SOON_AT_REST = [
 @pytest.mark.parametrize(
     "structure", SOON_AT_REST, ids=lambda s: f"{s.storeys}-{s.impact_law.kind}"
 )
-def test_both_roads_lock_alike(structure: PodiumStructure) -> None:
+def test_both_roads_lock_alike(structure):
     """Through re-contacts and what follows in full contact and beyond."""
     record = waves(2.4, DT, 1.6 * structure.uplift_acceleration, seed=5)
     result = agree(structure, record, None, 0.6, 1e-7)
@@ -233,9 +222,7 @@ def test_both_roads_lock_alike(structure: PodiumStructure) -> None:
 @pytest.mark.parametrize(
     ("rho", "law"), [(FLAT, RIGID), (0.26, FLEXIBLE), (0.5, RIGID), (1.5, FLEXIBLE)]
 )
-def test_both_roads_under_a_piece_of_an_earthquake(
-    rho: float, law: ImpactLaw, fema_record: RecordLoader
-) -> None:
+def test_both_roads_under_a_piece_of_an_earthquake(rho, law, fema_record):
     whole = fema_record("farfield/1/b")
     peak = int(np.argmax(np.abs(whole.acceleration))) * whole.dt
     record = part(whole, max(peak - 100 * whole.dt, 0.0), 199 * whole.dt)
@@ -246,7 +233,7 @@ def test_both_roads_under_a_piece_of_an_earthquake(
 @pytest.mark.evidence("buildings on bearings under earthquakes", "program")
 @pytest.mark.long
 @pytest.mark.parametrize("seed", range(100))
-def test_both_roads_for_random_structures(seed: int) -> None:
+def test_both_roads_for_random_structures(seed):
     rng = np.random.default_rng(seed)
     n, tan_alpha = int(rng.integers(0, 5)), rng.uniform(0.05, 0.25)
     damping = RayleighDamping(float(rng.choice([0.0, 0.02, 0.1])))

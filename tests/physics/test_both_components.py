@@ -5,22 +5,16 @@ momenta of the tilt vector, complex-step derivatives of the Lagrangian, an adapt
 at 1e-12. Their results have ten digits.
 """
 
-from __future__ import annotations
-
 import json
 import math
-from collections.abc import Iterator
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from oracles.spatial_integrator import SpatialSimulation, simulate_pair
 from paper_structures import (
-    Array,
-    RecordLoader,
     ground,
     known,
     needs_compiled_kernels,
@@ -30,7 +24,6 @@ from paper_structures import (
     waves,
 )
 from two_components import (
-    History,
     followed,
     frame,
     pair,
@@ -40,7 +33,7 @@ from two_components import (
 )
 
 import rpscli
-from rpscli.analyses.kernels.history import SampledHistory, sampled_history
+from rpscli.analyses.kernels.history import sampled_history
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.case.case import load_case
@@ -54,24 +47,23 @@ from rpscli.model.devices import (
     ViscousDamper,
 )
 from rpscli.model.impact import ImpactLaw
-from rpscli.model.podium import Device, PodiumStructure
 from rpscli.physics.state import IMPACT, SLIDING, STICKING, STUCK, UPLIFT
 from rpscli.records.ground_motion import MotionComponents
 
 pytestmark = needs_compiled_kernels
 
 ORACLES = Path(__file__).parents[1] / "oracles"
-REFERENCES: dict[str, Any] = json.loads((ORACLES / "spatial_references.json").read_text())
-OTHERS: dict[str, Any] = json.loads((ORACLES / "both_references.json").read_text())
+REFERENCES = json.loads((ORACLES / "spatial_references.json").read_text())
+OTHERS = json.loads((ORACLES / "both_references.json").read_text())
 HISTORIES = {each["name"]: each for each in OTHERS["histories"]}
 STEP = 0.01
-ARCS: dict[str, Any] = {"tan_wedge": 0.3, "rho": 0.5}
-THREE: dict[str, Any] = {"storeys": 3, "eta": 3.0, **ARCS}
+ARCS = {"tan_wedge": 0.3, "rho": 0.5}
+THREE = {"storeys": 3, "eta": 3.0, **ARCS}
 FINE = TimeHistorySettings(free_vibration=0.0, accuracy=4.0)
 X, Y = two_pulses()
 PULSES = pair(X, Y, STEP)
 
-TURNS: dict[str, tuple[dict[str, Any], float]] = {
+TURNS = {
     "frame": ({}, 181.997),
     "three storeys": ({"storeys": 3, "eta": 3.0}, 187.385),
 }
@@ -80,7 +72,7 @@ TURNS: dict[str, tuple[dict[str, Any], float]] = {
 @pytest.mark.evidence("both components", "exact")
 @pytest.mark.parametrize("across", [4e-8, 4e-9, 1.2e-9])
 @pytest.mark.parametrize("building", TURNS)
-def test_angle_of_turn(building: str, across: float) -> None:
+def test_angle_of_turn(building, across):
     """Without loss pi sqrt(A/K), however near (1.2e-9: the map); with an impact's straight on."""
     above, turn = TURNS[building]
     for contact_time, expected in ((0.0, turn), (2e-3, 180.0)):
@@ -96,7 +88,7 @@ def test_angle_of_turn(building: str, across: float) -> None:
             assert passed.least_tilt < 5e-10
 
 
-def upwards() -> Array:
+def upwards():
     """A vertical motion with its largest pulses about uplift [m/s2]."""
     t = np.arange(0.0, 6.0, STEP)
     z, y = (np.pi * (t - 1.45) / 0.4) ** 2, (np.pi * (t - 2.3) / 0.3) ** 2
@@ -115,7 +107,7 @@ def upwards() -> Array:
         (True, 2e-3, 0.077858273),
     ],
 )
-def test_two_pulses(vertical: bool, contact_time: float, largest: float) -> None:
+def test_two_pulses(vertical, contact_time, largest):
     """Maxima by two other programs, vertical motion at uplift included."""
     motion = pair(X, Y, STEP, upwards() if vertical else None)
     structure = frame(**THREE, contact_time=contact_time)
@@ -130,7 +122,7 @@ def test_two_pulses(vertical: bool, contact_time: float, largest: float) -> None
 
 @pytest.mark.evidence("both components", "program")
 @pytest.mark.parametrize("row", range(len(REFERENCES["records"])))
-def test_recorded_pairs_of_another_program(row: int, fema_record: RecordLoader) -> None:
+def test_recorded_pairs_of_another_program(row, fema_record):
     """An adaptive integrator in polar coordinates: all digits that are known of it."""
     given = REFERENCES["records"][row]
     n, rho = given["n"], given["rho"]
@@ -157,9 +149,9 @@ def test_recorded_pairs_of_another_program(row: int, fema_record: RecordLoader) 
         assert lost == pytest.approx(given["lost"], rel=1e-6)
 
 
-def test_directions_are_exchanged_with_their_buildings() -> None:
+def test_directions_are_exchanged_with_their_buildings():
     """Another building in y: x and y change places."""
-    options: dict[str, Any] = {"storeys": 3, "eta": 3.0, "contact_time": 2e-3}
+    options = {"storeys": 3, "eta": 3.0, "contact_time": 2e-3}
     one = followed(frame(**options, period=0.3, period_y=0.5), PULSES)
     other = followed(frame(**options, period=0.5, period_y=0.3), pair(Y, X, STEP))
     mirrored = 1j * np.conj(one.tilt)
@@ -178,7 +170,7 @@ def test_directions_are_exchanged_with_their_buildings() -> None:
 @pytest.mark.parametrize(
     "options", [{"contact_time": 0.0}, {"factor": 1.0 / 0.8388687078360144}]
 )
-def test_nothing_is_lost_without_contact_time_or_loss(options: dict[str, Any]) -> None:
+def test_nothing_is_lost_without_contact_time_or_loss(options):
     history = followed(frame(**{**THREE, **options}), PULSES)
     assert len(history.passes)
     assert history.left.energy_passes == pytest.approx(
@@ -188,7 +180,7 @@ def test_nothing_is_lost_without_contact_time_or_loss(options: dict[str, Any]) -
 
 W = frame(3, 3.0).weight
 
-KINDS: dict[str, Device] = {
+KINDS = {
     "linear": ViscousDamper(0.3 * W),
     "root": ViscousDamper(0.2 * W, 0.5),
     "power": ViscousDamper(0.3 * W, 1.8),
@@ -199,13 +191,11 @@ KINDS: dict[str, Device] = {
 }
 
 
-def equipped(kind: str, storeys: int = 3, **options: Any) -> PodiumStructure:
+def equipped(kind, storeys=3, **options):
     return frame(storeys, 3.0, contact_time=2e-3, devices=(KINDS[kind],), **options)
 
 
-def beside_the_second_integrator(
-    kind: str, arcs: bool, x: Array, y: Array, storeys: int = 3
-) -> None:
+def beside_the_second_integrator(kind, arcs, x, y, storeys=3):
     """Cartesian, adaptive, laws as functions: the same tilts throughout."""
     structure = equipped(kind, storeys, **(ARCS if arcs else {}))
     ours = followed(structure, pair(x, y, STEP), FINE)
@@ -224,7 +214,7 @@ def beside_the_second_integrator(
     assert abs(ours.residual) < 1e-9
 
 
-def test_a_third_of_a_second_with_a_damper() -> None:
+def test_a_third_of_a_second_with_a_damper():
     x, y = two_pulses()[:, 80:115]
     x[0] = y[0] = 0.0
     beside_the_second_integrator("root", True, x, y, 1)
@@ -233,13 +223,13 @@ def test_a_third_of_a_second_with_a_damper() -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("arcs", [False, True])
 @pytest.mark.parametrize("kind", KINDS)
-def test_against_the_second_integrator(kind: str, arcs: bool) -> None:
+def test_against_the_second_integrator(kind, arcs):
     beside_the_second_integrator(kind, arcs, *two_pulses(2.0))
 
 
 @pytest.mark.evidence("both components", "exact")
 @pytest.mark.parametrize("seed", range(4))
-def test_energy_closes_where_tendons_yield_and_columns_go_round(seed: int) -> None:
+def test_energy_closes_where_tendons_yield_and_columns_go_round(seed):
     """Where x' = 0 ends yielding, what goes on across the tilt is not stopped."""
     structure = equipped("yields", 2)
     peak = 3.0 * structure.uplift_acceleration
@@ -252,7 +242,7 @@ def test_energy_closes_where_tendons_yield_and_columns_go_round(seed: int) -> No
     assert abs(result.energy.residual) < 1e-7 * result.energy.input
 
 
-def motion_of(reference: dict[str, Any], fema_record: RecordLoader) -> MotionComponents:
+def motion_of(reference, fema_record):
     """Sines, or a part of a recorded pair."""
     of = reference["motion"]
     if "sines" in of:
@@ -280,7 +270,7 @@ def motion_of(reference: dict[str, Any], fema_record: RecordLoader) -> MotionCom
 
 @pytest.mark.evidence("both components", "program")
 @pytest.mark.parametrize("name", HISTORIES)
-def test_histories_of_another_program(name: str, fema_record: RecordLoader) -> None:
+def test_histories_of_another_program(name, fema_record):
     reference = HISTORIES[name]
     motion = motion_of(reference, fema_record)
     structure = load_case({"rps": 1, **reference["case"]}).structure
@@ -322,7 +312,7 @@ def test_histories_of_another_program(name: str, fema_record: RecordLoader) -> N
     ]
 
 
-def elastic_shear(structure: PodiumStructure, history: History) -> Array:
+def elastic_shear(structure, history):
     """Resultant of the springs of the first storey at the samples [N]."""
     n, both = structure.storeys, []
     for axis, building in enumerate(
@@ -341,7 +331,7 @@ PLANE, EDGES = (
 
 @pytest.mark.evidence("both components", "program")
 @pytest.mark.parametrize("reference", OTHERS["free"], ids=["near", "nearest", "edges"])
-def test_free_motion_on_compliant_ends(reference: dict[str, Any]) -> None:
+def test_free_motion_on_compliant_ends(reference):
     """Energy and momentum stay; the other program's path."""
     contact = PLANE if reference["kind"] == "plane" else EDGES
     plain = frame(loss=0.0)
@@ -357,8 +347,8 @@ def test_free_motion_on_compliant_ends(reference: dict[str, Any]) -> None:
     assert free.left.energy_stored == pytest.approx(begun, rel=1e-9)
 
 
-SOFT: dict[str, Any] = {"loss": 0.3, **ARCS}
-ENDS: dict[str, dict[str, Any]] = {
+SOFT = {"loss": 0.3, **ARCS}
+ENDS = {
     "plane": {"contact": Contact("plane", period_ratio=1.2), "loss": 0.3},
     "plane arcs": {"contact": Contact("plane", period_ratio=1.2), **SOFT},
     "edges": {"contact": Contact("edges", period_ratio=1.2)},
@@ -369,7 +359,7 @@ GIVING_WAY = [end for end in ENDS if end != "spherical"]
 
 
 @pytest.mark.parametrize("end", GIVING_WAY)
-def test_sustained_upward_acceleration(end: str) -> None:
+def test_sustained_upward_acceleration(end):
     """Where the bed pushes out what lifted ends turn back, histories go on, and energy closes."""
     motion = pair(X, Y, STEP, 3.0 * np.ones(len(X)))
     settings = TimeHistorySettings(free_vibration=2.0)
@@ -380,7 +370,7 @@ def test_sustained_upward_acceleration(end: str) -> None:
 
 @pytest.mark.evidence("compliant ends", "exact")
 @pytest.mark.parametrize("end", GIVING_WAY)
-def test_in_proportion_to_the_stiffness(end: str) -> None:
+def test_in_proportion_to_the_stiffness(end):
     """Stiffer and stiffer, the motion of rigid ends with passes that lose nothing."""
     x, y = two_pulses(2.0)
     options = {k: v for k, v in ENDS[end].items() if k != "contact"} | {"loss": 0.0}
@@ -400,7 +390,7 @@ def test_in_proportion_to_the_stiffness(end: str) -> None:
 
 @pytest.mark.parametrize("aim", [0.0, 1e-12, 0.5, 1.0, 1.5])
 @pytest.mark.parametrize("contact", [PLANE, EDGES], ids=["plane", "edges"])
-def test_passes_at_any_distance(contact: Contact, aim: float) -> None:
+def test_passes_at_any_distance(contact, aim):
     """Aimed at parts of phi_u, nothing is lost without loss, and neighbours stay neighbours."""
     structure = frame(contact=contact, loss=0.0)
     assert structure.bed is not None
@@ -422,7 +412,7 @@ REFUSED = {
     "rolling_resistance": "rolling resistance",
     "impact": "floors.*jump",
 }
-WORDS: dict[str, tuple[Device, ...]] = {
+WORDS = {
     "viscous": (ViscousDamper(0.2 * W),),
     "friction": (FrictionDamper(0.02 * W),),
     "stop": (Stop(0.05, 20.0 * W),),
@@ -431,7 +421,7 @@ WORDS: dict[str, tuple[Device, ...]] = {
 }
 
 
-def cells() -> Iterator[tuple[str, bool, str, bool]]:
+def cells():
     """Ends, whether both components act, device or law, and whether the guide says yes."""
     rows = GUIDE[GUIDE.index(HEAD) :].split("\n\n", 1)[0].splitlines()
     names = [cell.strip().split(" ")[0].strip("`") for cell in rows[0].split("|")[1:-1]]
@@ -443,11 +433,11 @@ def cells() -> Iterator[tuple[str, bool, str, bool]]:
 
 
 @pytest.mark.parametrize(("end", "both", "name", "goes"), list(cells()))
-def test_every_cell_of_the_guide(end: str, both: bool, name: str, goes: bool) -> None:
+def test_every_cell_of_the_guide(end, both, name, goes):
     x, y = two_pulses(3.0)
     motion = pair(x, y, STEP, 0.3 * x) if both else MotionComponents(ground(x, STEP))
 
-    def run() -> History | SampledHistory:
+    def run():
         plain = frame(3, 3.0, **({} if end == "rigid" else ENDS[end]))
         if name != "impact":
             structure = replace(plain, devices=WORDS[name])
@@ -463,7 +453,7 @@ def test_every_cell_of_the_guide(end: str, both: bool, name: str, goes: bool) ->
             run()
 
 
-def test_the_guide_has_every_combination() -> None:
+def test_the_guide_has_every_combination():
     said = {(end, both, name) for end, both, name, _ in cells()}
     assert said == set(
         product(

@@ -3,18 +3,13 @@
 Of the beds pressures are followed point by point.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
 from oracles.compliant_storey import CompliantStorey, resolved
 from paper_structures import (
-    Array,
-    RecordLoader,
     building,
     ground,
     known,
@@ -28,31 +23,22 @@ from paper_structures import podium as paper_podium
 from scipy.optimize import brentq
 
 from rpscli.analyses.demand import Request, demands
-from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.bearing import Bearing
 from rpscli.model.contact import Contact
 from rpscli.model.devices import Stop
 from rpscli.model.impact import ImpactLaw
-from rpscli.model.podium import Device, PodiumStructure
+from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import ModalDamping
-from rpscli.records.ground_motion import GroundMotion, MotionComponents
+from rpscli.records.ground_motion import MotionComponents
 
 UNDAMPED = ModalDamping(0.0)
 ALPHA = math.atan(0.15)
 RHO = 0.5
 
 
-def podium(
-    storeys: int,
-    contact: Contact,
-    *,
-    loss: float = 1.0,
-    rho: float = 0.0,
-    devices: tuple[Device, ...] = (),
-    **of_building: Any,
-) -> PodiumStructure:
+def podium(storeys, contact, *, loss=1.0, rho=0.0, devices=(), **of_building):
     """R 1.5 m, tan(alpha) .15, gamma 10, eta n, T_1 n/10 s, 5 %."""
     above = building(storeys, **of_building) if storeys else None
     usual = paper_podium(
@@ -61,12 +47,10 @@ def podium(
     return replace(usual, contact=contact, devices=devices)
 
 
-def shaken(
-    structure: PodiumStructure, motion: GroundMotion, **how: float
-) -> TimeHistoryResult:
+def shaken(structure, motion, **how):
     return time_history(
         structure, motion, TimeHistorySettings(**how), with_fixed_base=False
-    )  # type: ignore[arg-type]
+    )
 
 
 RELEASES = [
@@ -87,18 +71,16 @@ RELEASES = [
 @pytest.mark.evidence("compliant ends", "program")
 @needs_compiled_kernels
 @pytest.mark.parametrize(("rho", "storeys", "phi_u", "loss", "swing", "shear"), RELEASES)
-def test_a_release(
-    rho: float, storeys: int, phi_u: float, loss: float, swing: float, shear: float
-) -> None:
-    def of(contact: Contact) -> PodiumStructure:
+def test_a_release(rho, storeys, phi_u, loss, swing, shear):
+    def of(contact):
         return podium(
             storeys, contact, loss=loss, damping=UNDAMPED, profile="uniform", rho=rho
         )
 
-    def soft(stiffness: float) -> Contact:
+    def soft(stiffness):
         return Contact("plane", stiffness=stiffness, damping=0.0)
 
-    def lifts(stiffness: float) -> float:
+    def lifts(stiffness):
         return known(of(soft(stiffness)).bed).uplift_rotation - phi_u
 
     contact = Contact("plane", settlement=phi_u * 1.5 * math.sin(ALPHA), damping=0.0)
@@ -113,7 +95,7 @@ def test_a_release(
     assert abs(found.energy.residual) < 5e-6 * found.trace.energy_stored[0]
 
 
-def bedded(structure: PodiumStructure) -> tuple[Array, Array, Array]:
+def bedded(structure):
     """M, C and K of [u_b, floors over the ground] in full contact, written here."""
     bed, above, n = (
         known(structure.bed),
@@ -131,7 +113,7 @@ def bedded(structure: PodiumStructure) -> tuple[Array, Array, Array]:
 
 
 @pytest.mark.evidence("compliant ends", "exact")
-def test_full_contact_swings_with_the_period_that_was_asked_for() -> None:
+def test_full_contact_swings_with_the_period_that_was_asked_for():
     structure = podium(
         3, Contact("plane", period_ratio=1.2, damping=0.0), damping=UNDAMPED
     )
@@ -147,10 +129,10 @@ def test_full_contact_swings_with_the_period_that_was_asked_for() -> None:
 @needs_compiled_kernels
 @pytest.mark.parametrize("kind", ["plane", "edges"])
 @pytest.mark.parametrize("peak", [0.0, 5.0])
-def test_a_second_integrator_agrees(kind: str, peak: float) -> None:
+def test_a_second_integrator_agrees(kind, peak):
     """Five seconds, without and with vertical motion of this peak [m/s2]."""
     motion, vertical = waves(5.0, 0.01, 2.5, seed=4), waves(5.0, 0.01, peak, seed=11)
-    contact = Contact(kind, period_ratio=1.3, damping=0.1)  # type: ignore[arg-type]
+    contact = Contact(kind, period_ratio=1.3, damping=0.1)
     structure = podium(2, contact, loss=0.5)
     lifts = known(structure.bed).uplift_rotation
     other = CompliantStorey(
@@ -172,7 +154,7 @@ def test_a_second_integrator_agrees(kind: str, peak: float) -> None:
 
 
 @needs_compiled_kernels
-def test_a_sine_sweep_is_that_of_the_modes() -> None:
+def test_a_sine_sweep_is_that_of_the_modes():
     """Below uplift, in state space."""
     structure = podium(3, Contact("plane", period_ratio=1.2, damping=0.1))
     time, (M, C, K) = np.arange(1201) * 0.01, bedded(structure)
@@ -191,9 +173,7 @@ STRIPS = 4000
 """Of a plane end: where its contact ends is known to a strip, 5e-4 of the half width."""
 
 
-def strips(
-    structure: PodiumStructure, settlement: float, theta: Array
-) -> tuple[Array, Array]:
+def strips(structure, settlement, theta):
     """Restoring moment and lift v_b - v_b(0) of the storey, its weight at rest on springs.
 
     The middle of an end sinks by s, its springs by s + xi sin(theta); none pulls. Bisection finds
@@ -207,7 +187,7 @@ def strips(
         xi = B * ((2.0 * np.arange(STRIPS) + 1.0) / STRIPS - 1.0)
     spring = weight / (settlement * xi.size)
 
-    def forces(sunk: Array) -> Array:
+    def forces(sunk):
         lowered = sunk[:, None] + np.sin(theta)[:, None] * xi
         return np.asarray(spring * np.maximum(lowered, 0.0))
 
@@ -223,9 +203,9 @@ def strips(
 @pytest.mark.evidence("compliant ends", "program")
 @pytest.mark.parametrize("kind", ["plane", "edges"])
 @pytest.mark.parametrize("settlement", [6e-6, 4.7e-5, 1.76e-4])
-def test_moments_and_stiffness_of_a_static_bed(kind: str, settlement: float) -> None:
+def test_moments_and_stiffness_of_a_static_bed(kind, settlement):
     """Springs without tension under flat ends, at rest: nothing of the law of one end is used."""
-    structure = podium(3, Contact(kind, settlement=settlement))  # type: ignore[arg-type]
+    structure = podium(3, Contact(kind, settlement=settlement))
     bed, b = known(structure.bed), structure.bearing
     size, sine = 2.0 * structure.weight * b.semi_diagonal, math.sin(b.alpha)
     lifts = settlement / b.half_width
@@ -250,8 +230,8 @@ def test_moments_and_stiffness_of_a_static_bed(kind: str, settlement: float) -> 
 @pytest.mark.parametrize("upwards", [3.0, 6.0])
 @pytest.mark.parametrize("storeys", [0, 2])
 def test_under_sustained_upward_acceleration_edges_are_held_where_they_lift(
-    storeys: int, upwards: float
-) -> None:
+    storeys, upwards
+):
     """The bed's phi_u is that of the weight: in between the columns stand, and energy closes."""
     structure = podium(storeys, Contact("edges", settlement=1e-4))
     push = (
@@ -272,7 +252,7 @@ def test_under_sustained_upward_acceleration_edges_are_held_where_they_lift(
 
 
 @needs_compiled_kernels
-def test_landing_beside_the_end_of_a_steep_bed() -> None:
+def test_landing_beside_the_end_of_a_steep_bed():
     """A step that ended there was longer than its error allowed, and two thirds of energy went."""
     bearing = Bearing(1.5388597138810514, 0.10702607933586131, 0.10702607933586131, 0.0)
     structure = PodiumStructure(
@@ -297,9 +277,7 @@ def test_landing_beside_the_end_of_a_steep_bed() -> None:
 @pytest.mark.parametrize(
     ("factor", "overturned"), [(1.0, (7, 6)), (0.5, (1, 0)), (0.15, (0, 0))]
 )
-def test_twenty_records_on_a_resolved_bed(
-    storeys: int, factor: float, overturned: tuple[int, int], fema_record: RecordLoader
-) -> None:
+def test_twenty_records_on_a_resolved_bed(storeys, factor, overturned, fema_record):
     """Loss 0.3 for a bed with 30 % of damping; record by record, of those that both stand."""
     structure = podium(storeys, Contact("plane", period_ratio=1.2), loss=0.3)
     records = [fema_record(f"farfield/{i}/a") for i in range(1, 21)]

@@ -1,7 +1,5 @@
 """Forces between columns, ground and beam by Newton's law for every mass; maxima of floors."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from oracles.storey_lagrangian import StoreyLagrangian
@@ -21,7 +19,6 @@ from rpscli.analyses.kernels.history import sampled_history
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import denser_trace, time_history
 from rpscli.analyses.trace import trace_of
-from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import ModalDamping, RayleighDamping
 from rpscli.physics.state import FULL_CONTACT, IMPACT
 from rpscli.records.ground_motion import MotionComponents
@@ -36,7 +33,7 @@ RECORD, VERTICAL = waves(1.5, DT, 4.0, seed=2), waves(1.5, DT, 3.0, seed=3)
     [podium(0, 0.15, 0.5), podium(2, 0.15, FLAT), podium(3, 0.15, 0.5)],
     ids=str,
 )
-def test_demands_are_newtons_sums_over_all_masses(structure: PodiumStructure) -> None:
+def test_demands_are_newtons_sums_over_all_masses(structure):
     settings = TimeHistorySettings(free_vibration=0.0)
     run = sampled_history(structure, MotionComponents(RECORD, VERTICAL), settings)
     samples, history, above = run.samples, run.history, structure.superstructure
@@ -86,7 +83,7 @@ def test_demands_are_newtons_sums_over_all_masses(structure: PodiumStructure) ->
 
 
 @pytest.mark.evidence("forces in columns, friction", "exact")
-def test_a_block_that_begins_to_rock_needs_the_friction_of_its_slope() -> None:
+def test_a_block_that_begins_to_rock_needs_the_friction_of_its_slope():
     """Quasi-static: F = N tan(alpha), at the bottom; nothing rests on a free block."""
     structure = block(0.15, 1.0)
     peak = -1.0000001 * structure.uplift_acceleration
@@ -99,7 +96,7 @@ def test_a_block_that_begins_to_rock_needs_the_friction_of_its_slope() -> None:
 
 
 @pytest.mark.evidence("forces in columns, friction", "exact")
-def test_a_falling_ground_takes_the_contact_away_and_the_user_is_told() -> None:
+def test_a_falling_ground_takes_the_contact_away_and_the_user_is_told():
     falling = ground(np.full(20, -1.2 * 9.80665), 0.01)
     result = time_history(
         podium(0, 0.15, 0.5), stillness(0.01), TimeHistorySettings(), vertical=falling
@@ -114,9 +111,7 @@ def test_a_falling_ground_takes_the_contact_away_and_the_user_is_told() -> None:
 @needs_compiled_kernels
 @pytest.mark.parametrize("damping", [RayleighDamping(0.05), ModalDamping(0.02)], ids=str)
 @pytest.mark.parametrize(("storeys", "rho"), [(1, FLAT), (4, 0.5), (7, 1.5), (11, FLAT)])
-def test_maxima_are_those_of_a_dense_trace(
-    storeys: int, rho: float, damping: RayleighDamping | ModalDamping
-) -> None:
+def test_maxima_are_those_of_a_dense_trace(storeys, rho, damping):
     """None of those that the search leaves unformed would have been larger."""
     structure = podium(
         storeys, 0.15, rho, superstructure=building(storeys, damping=damping)

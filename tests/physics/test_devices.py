@@ -4,8 +4,6 @@ A slender rigid frame whose arcs have the radius of half its height is restored 
 F_0 and moves like a mass M_e on a line. Swings with devices are among the certified problems.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -25,23 +23,18 @@ from scipy.integrate import quad
 
 from rpscli.analyses.demand import demand
 from rpscli.analyses.kernels.systems import steps_a_second
-from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.model.devices import FrictionDamper, RollingResistance, Tendon, ViscousDamper
-from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.statics import largest_recentring_friction, recentres
-from rpscli.records.ground_motion import GroundMotion
 
 G = STANDARD_GRAVITY
 SMALL = 3.0 * SLENDER
 """What the slender theory leaves out: squares of it, and terms of alpha over the rotation."""
 
 
-def follow(
-    structure: PodiumStructure, motion: GroundMotion, start: float = 0.0
-) -> TimeHistoryResult:
+def follow(structure, motion, start=0.0):
     settings = TimeHistorySettings(initial_rotation=start, free_vibration=0.0)
     return time_history(structure, motion, settings, with_fixed_base=False)
 
@@ -51,12 +44,12 @@ of_shapes = pytest.mark.parametrize(
 )
 
 
-def frame(slope: float, rho: float, *devices: Device) -> PodiumStructure:
+def frame(slope, rho, *devices):
     """A rigid frame on four columns with devices."""
     return replace(podium(0, slope, rho), devices=devices, columns=4)
 
 
-def path(structure: PodiumStructure, rotation: float) -> tuple[float, float, float]:
+def path(structure, rotation):
     """Restoring force F, u_b and v_b."""
     force, u, v = structure.path(np.array([rotation]))
     return float(force[0]), float(u[0]), float(v[0])
@@ -66,16 +59,14 @@ RAMP = 1.0
 """Growth of the ground's acceleration [m/s3]."""
 
 
-def ramp(sign: float = 1.0, seconds: float = 8.0) -> GroundMotion:
+def ramp(sign=1.0, seconds=8.0):
     return ground(sign * RAMP * np.arange(0.0, seconds, 0.01), 0.01)
 
 
 @pytest.mark.evidence("devices", "exact")
 @of_shapes
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_uplift_is_delayed_by_what_devices_hold(
-    slope: float, rho: float, sign: float
-) -> None:
+def test_uplift_is_delayed_by_what_devices_hold(slope, rho, sign):
     bare = frame(slope, rho)
     W, alpha, gamma = bare.weight, bare.bearing.alpha, bare.gamma
     F_d, P, f = 0.03 * W, 0.01 * W, 0.01 * bare.bearing.half_width
@@ -93,9 +84,7 @@ def test_uplift_is_delayed_by_what_devices_hold(
 @pytest.mark.evidence("devices", "exact")
 @of_shapes
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_friction_sticks_and_slides_at_its_limit(
-    slope: float, rho: float, sign: float
-) -> None:
+def test_friction_sticks_and_slides_at_its_limit(slope, rho, sign):
     bare = frame(slope, rho)
     start = 0.5 * bare.critical_rotation
     force, _, _ = path(bare, start)
@@ -109,7 +98,7 @@ def test_friction_sticks_and_slides_at_its_limit(
 
 
 @pytest.mark.evidence("devices", "exact")
-def test_a_stuck_storey_carries_a_building_on_a_fixed_base_until_its_limit() -> None:
+def test_a_stuck_storey_carries_a_building_on_a_fixed_base_until_its_limit():
     bare, start, dt = podium(2, 0.15, 0.5), 0.05, 0.01
     restoring, _, _ = path(bare, start)
     above, force = known(bare.superstructure), 1.5 * restoring
@@ -133,9 +122,7 @@ def test_a_stuck_storey_carries_a_building_on_a_fixed_base_until_its_limit() -> 
 
 @pytest.mark.evidence("devices", "exact")
 @pytest.mark.parametrize(("factor", "stays"), [(1.001, True), (0.999, False)])
-def test_more_friction_than_weight_brings_back_stays_tilted(
-    factor: float, stays: bool
-) -> None:
+def test_more_friction_than_weight_brings_back_stays_tilted(factor, stays):
     bare = frame(0.15, 0.5)
     start = 0.5 * bare.critical_rotation
     friction = FrictionDamper(factor * largest_recentring_friction(bare, start))
@@ -150,14 +137,14 @@ def test_more_friction_than_weight_brings_back_stays_tilted(
 
 @pytest.mark.evidence("devices", "exact")
 @pytest.mark.parametrize("exponent", [0.2, 0.5, 1.0, 1.5, 2.0])
-def test_a_damper_falls_towards_its_final_velocity(exponent: float) -> None:
+def test_a_damper_falls_towards_its_final_velocity(exponent):
     """Time and way to 0.9 of it: integrals of M_e dv and M_e v dv over F_0 - c v^a."""
     bare = frame(SLENDER, 0.5)
     F_0, final = bare.uplift_force, 1e-3
     M_e = 0.25 * bare.columns_mass * (bare.bearing.inertia_ratio + 4.0 * bare.gamma)
     c = F_0 / final**exponent
 
-    def whole(power: int) -> float:
+    def whole(power):
         """Over v = s^2 final, which takes the kink of weak powers away."""
         return quad(
             lambda s: 2.0 * s * (s * s * final) ** power * final * M_e
@@ -178,9 +165,7 @@ def test_a_damper_falls_towards_its_final_velocity(exponent: float) -> None:
 
 
 @pytest.mark.parametrize(("exponent", "share"), [(0.2, 1.0), (0.3, 2.0)])
-def test_a_damper_that_holds_does_not_try_every_step_anew(
-    exponent: float, share: float
-) -> None:
+def test_a_damper_that_holds_does_not_try_every_step_anew(exponent, share):
     """Explicit steps of order 7 are stable to 3.9 over the decay rate; each is tried once or so."""
     bare = podium(1)
     structure = replace(bare, devices=(ViscousDamper(share * bare.weight, exponent),))

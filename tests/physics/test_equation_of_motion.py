@@ -1,7 +1,5 @@
 """Geometry and equation of motion beside Lagrange's equations and the theory; the misprints."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 
@@ -44,7 +42,7 @@ class Path(NamedTuple):
     v: float
 
 
-def printed(bearing: Bearing, x: float, *, rolling: bool) -> Path:
+def printed(bearing, x, *, rolling):
     a, k, sin, cos = bearing.alpha, 2.0 * bearing.curvature_ratio, math.sin, math.cos
     k, b = k * cos(a), x if rolling else bearing.beta
     return Path(
@@ -55,7 +53,7 @@ def printed(bearing: Bearing, x: float, *, rolling: bool) -> Path:
     )
 
 
-def shape_of(tan_alpha: float, widening: float, sin_beta: float) -> Bearing:
+def shape_of(tan_alpha, widening, sin_beta):
     rise = tan_alpha * (widening - 1.0)
     return Bearing(1.0, tan_alpha, tan_alpha + rise, rise / (2.0 * sin_beta))
 
@@ -67,10 +65,8 @@ shapes = st.builds(
 
 @pytest.mark.evidence("geometry of columns", "exact")
 @given(shapes)
-def test_critical_rotation_is_the_first_root_on_the_branch_travelled(
-    bearing: Bearing,
-) -> None:
-    def B(x: float) -> float:
+def test_critical_rotation_is_the_first_root_on_the_branch_travelled(bearing):
+    def B(x):
         return printed(bearing, x, rolling=x < bearing.beta).B
 
     grid = np.linspace(0.0, 1.999 * math.pi, 801)  # B stays negative for half a turn
@@ -86,9 +82,7 @@ def test_critical_rotation_is_the_first_root_on_the_branch_travelled(
 
 @pytest.mark.evidence("geometry of columns", "exact")
 @given(shapes, st.lists(st.floats(0.0, 1.4), min_size=1, max_size=5))
-def test_the_path_takes_each_point_in_its_own_phase(
-    bearing: Bearing, tilt: list[float]
-) -> None:
+def test_the_path_takes_each_point_in_its_own_phase(bearing, tilt):
     x = np.array(tilt)
     path = np.array(
         geometry.path_along(bearing.rolling, bearing.rocking, bearing.beta, x)
@@ -99,12 +93,12 @@ def test_the_path_takes_each_point_in_its_own_phase(
 
 
 @st.composite
-def structures(draw: st.DrawFn) -> PodiumStructure:
+def structures(draw):
     n = draw(st.integers(0, 4))
     positive = st.floats(0.2, 5.0)
     above = None
     if n:
-        dampings: list[RayleighDamping | ModalDamping] = [
+        dampings = [
             RayleighDamping(0.05),
             ModalDamping(0.03),
         ]
@@ -127,9 +121,7 @@ def structures(draw: st.DrawFn) -> PodiumStructure:
 @pytest.mark.evidence("equation of motion", "program")
 @pytest.mark.evidence("equation of motion", "published")
 @given(structures(), st.integers(0, 99), st.floats(-0.9, 0.9))
-def test_samples_obey_lagrange_and_the_theory(
-    structure: PodiumStructure, seed: int, start: float
-) -> None:
+def test_samples_obey_lagrange_and_the_theory(structure, seed, start):
     """Accelerations and energies, while rolling and rocking, under a ground that also rises."""
     settings = TimeHistorySettings(
         free_vibration=0.0, initial_rotation=start * structure.critical_rotation
@@ -175,9 +167,7 @@ def test_samples_obey_lagrange_and_the_theory(
         assert floors == pytest.approx(-forces / system.masses, rel=1e-9, abs=1e-9)
 
 
-def coefficients(
-    structure: PodiumStructure, x: float, *, rolling: bool
-) -> tuple[float, float]:
+def coefficients(structure, x, *, rolling):
     """A and D of the equation of motion (Theory, section 2)."""
     bearing, gamma, eta = structure.bearing, structure.gamma, structure.eta
     B, C, _, _ = printed(bearing, x, rolling=rolling)
@@ -192,7 +182,7 @@ def coefficients(
 
 
 @given(st.floats(0.01, 0.4), st.sampled_from([FLAT, 0.5]))
-def test_misprint_1_d_while_rocking_lacks_4_eta_gamma(x: float, rho: float) -> None:
+def test_misprint_1_d_while_rocking_lacks_4_eta_gamma(x, rho):
     """Energy needs D = A'/2: A theta'^2/2 must change by what the forces do, and no more."""
     structure, h = podium(3, 0.15, rho), 1e-3
     before, (A, ours), after = (
@@ -207,7 +197,7 @@ def test_misprint_1_d_while_rocking_lacks_4_eta_gamma(x: float, rho: float) -> N
         assert abs(half_slope + C * B) > 0.9 * (factor - 1.0) * abs(C * B)
 
 
-def tilt_acceleration(structure: PodiumStructure, x: float) -> float:
+def tilt_acceleration(structure, x):
     """theta'' of a storey at rest at the tilt x, its springs at ease."""
     settings = TimeHistorySettings(free_vibration=0.0, initial_rotation=x)
     run = sampled_history(structure, MotionComponents(stillness(0.01)), settings)
@@ -215,7 +205,7 @@ def tilt_acceleration(structure: PodiumStructure, x: float) -> float:
 
 
 @pytest.mark.parametrize("rho", [FLAT, 0.3, 0.7, 1.5])
-def test_misprint_2_the_sign_of_gravity_in_k_l(rho: float) -> None:
+def test_misprint_2_the_sign_of_gravity_in_k_l(rho):
     """K_L must be the derivative of the forces, and a larger radius must stiffen the storey."""
     structure, h = podium(1, 1e-3, rho), 1e-6
     state = uplifted_state(structure.bearing, rolling=True, exact=False)
@@ -234,7 +224,7 @@ def test_misprint_2_the_sign_of_gravity_in_k_l(rho: float) -> None:
     assert wrong == pytest.approx(-ours, rel=1e-6)
 
 
-def test_misprint_3_the_first_order_theta_cr_jumps_at_its_rho_cr() -> None:
+def test_misprint_3_the_first_order_theta_cr_jumps_at_its_rho_cr():
     """theta_cr is a root of a continuous B(x), so it cannot jump; the printed branches do."""
     for tan_alpha, jump in ((0.10, 0.0099), (0.15, 0.0222), (0.20, 0.0392)):
         wedge = 2.0 * tan_alpha

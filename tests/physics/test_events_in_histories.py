@@ -3,8 +3,6 @@
 All are located within the step, turning points included; failures say what happened.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
@@ -15,7 +13,6 @@ import pytest
 from paper_structures import (
     COMPILED,
     FLAT,
-    Array,
     bisected,
     ground,
     known,
@@ -31,10 +28,9 @@ from rpscli.analyses.demand import demand
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
-from rpscli.analyses.trace import Event
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics.quintic import NO_PASSAGE, Quintic, first_descent
+from rpscli.physics.quintic import NO_PASSAGE, first_descent
 from rpscli.records.ground_motion import GroundMotion
 
 DT = 0.01
@@ -42,18 +38,18 @@ QUIET = TimeHistorySettings(free_vibration=0.0)
 RANDOM_CURVES = 1500 if COMPILED else 100
 
 
-def to_bernstein(powers: Array) -> Quintic:
+def to_bernstein(powers):
     """Coefficients on (0, 1) from those of t^5 ... 1 or of less."""
     padded = np.pad(powers, (6 - len(powers), 0))
     b = BPoly.from_power_basis(PPoly(padded[:, None], [0.0, 1.0])).c[:, 0]
     return (b[0], b[1], b[2], b[3], b[4], b[5])
 
 
-def descent(b: Quintic) -> float:
+def descent(b):
     return first_descent(b, np.empty(6))
 
 
-def descent_by_roots(b: Quintic) -> float:
+def descent_by_roots(b):
     """The start of the first interval between real roots on which the curve is negative."""
     powers = PPoly.from_bernstein_basis(BPoly(np.array(b)[:, None], [0.0, 1.0])).c[:, 0]
     roots = np.roots(powers)
@@ -66,7 +62,7 @@ def descent_by_roots(b: Quintic) -> float:
     return NO_PASSAGE
 
 
-def random_curve(rng: np.random.Generator, kind: int) -> Quintic:
+def random_curve(rng, kind):
     if kind == 0:  # anything
         b = rng.normal(size=6)
     elif kind == 1:  # starts above, mostly stays there
@@ -86,7 +82,7 @@ def random_curve(rng: np.random.Generator, kind: int) -> Quintic:
 
 @pytest.mark.evidence("steps, events, energy", "exact")
 @pytest.mark.parametrize("kind", range(5))
-def test_the_first_descent_is_found(kind: int) -> None:
+def test_the_first_descent_is_found(kind):
     rng = np.random.default_rng(kind)
     for _ in range(RANDOM_CURVES):
         b = random_curve(rng, kind)
@@ -112,11 +108,11 @@ def test_the_first_descent_is_found(kind: int) -> None:
         ((1.0, 1.0, 1.0, 1.0, 1.0, 1.0), NO_PASSAGE),
     ],
 )
-def test_starts_and_ends_on_zero(b: Quintic, expected: float) -> None:
+def test_starts_and_ends_on_zero(b, expected):
     assert descent(b) == expected
 
 
-def test_two_crossings_right_after_a_start_on_zero() -> None:
+def test_two_crossings_right_after_a_start_on_zero():
     # t (t - a)(t - 2 a) (4 - t)^2 leaves upwards, dips below between a and 2 a
     for a in (0.3, 1e-2, 1e-4, 1e-7):
         powers = np.polymul(np.poly([0.0, a, 2.0 * a]), [1.0, -8.0, 16.0])
@@ -128,9 +124,7 @@ def test_two_crossings_right_after_a_start_on_zero() -> None:
 
 @pytest.mark.parametrize("touch", [0.1, 0.37, 0.5, 0.9])
 @pytest.mark.parametrize("above", [1e-12, 1e-8, 1e-3])
-def test_a_curve_that_stays_above_by_any_margin_is_left_alone(
-    touch: float, above: float
-) -> None:
+def test_a_curve_that_stays_above_by_any_margin_is_left_alone(touch, above):
     powers = np.convolve([1.0, -2.0 * touch, touch**2], [1.0, 0.0, 0.0, 1.0])
     powers[-1] += above
     assert descent(to_bernstein(powers)) == NO_PASSAGE
@@ -199,7 +193,7 @@ FAILURES = {
 
 
 @pytest.mark.parametrize("name", FAILURES)
-def test_a_failure_is_told(name: str) -> None:
+def test_a_failure_is_told(name):
     if name == "an absurd record" and not COMPILED:
         pytest.skip("interpreted, the cosine of infinity raises")
     structure, record, settings, words, holds = FAILURES[name]
@@ -211,7 +205,7 @@ def test_a_failure_is_told(name: str) -> None:
 
 
 @needs_compiled_kernels
-def test_passing_the_critical_rotation_and_coming_back() -> None:
+def test_passing_the_critical_rotation_and_coming_back():
     """The ground that tilts the storey beyond theta_cr also fetches it back."""
     g, critical = FRAME.uplift_acceleration, FRAME.critical_rotation
     record = ground(np.concatenate((np.full(51, -3.0 * g), np.full(100, 3.0 * g))), DT)
@@ -238,9 +232,7 @@ def test_passing_the_critical_rotation_and_coming_back() -> None:
         (0.5, "overturned_rocking"),
     ],
 )
-def test_overturning_is_named_after_the_phase_at_theta_cr(
-    rho: float, outcome: str
-) -> None:
+def test_overturning_is_named_after_the_phase_at_theta_cr(rho, outcome):
     structure = podium(0, 0.15, rho)
     assert structure.bearing.overturns_rolling is (outcome == "overturned_rolling")
     result = let_go(structure, 1.01 * structure.critical_rotation, 8.0, 0.02)
@@ -251,7 +243,7 @@ def test_overturning_is_named_after_the_phase_at_theta_cr(
     assert result.duration == result.events[-1].time
 
 
-def passage_of(result: TimeHistoryResult) -> Event:
+def passage_of(result):
     """The only one, which the scalar result repeats."""
     (event,) = (e for e in result.events if e.kind == "critical_rotation_passed")
     assert result.critical_passage_time == event.time
@@ -263,7 +255,7 @@ def passage_of(result: TimeHistoryResult) -> Event:
 @pytest.mark.evidence("steps, events, energy", "exact")
 @needs_compiled_kernels
 @pytest.mark.parametrize(("storeys", "rho"), [(1, FLAT), (3, 0.25), (3, 0.5), (3, 1.5)])
-def test_the_passage_does_not_depend_on_the_samples(storeys: int, rho: float) -> None:
+def test_the_passage_does_not_depend_on_the_samples(storeys, rho):
     """Before the overturning limit or on the way back: the same instant for every sampling."""
     structure = podium(storeys, 0.12, rho)
     settings = TimeHistorySettings(free_vibration=2.0, accuracy=4.0)
@@ -284,7 +276,7 @@ def test_the_passage_does_not_depend_on_the_samples(storeys: int, rho: float) ->
 
 @pytest.mark.evidence("steps, events, energy", "exact")
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_a_release_from_beyond_theta_cr_has_passed_it_at_once(sign: float) -> None:
+def test_a_release_from_beyond_theta_cr_has_passed_it_at_once(sign):
     structure = podium(1, 0.15, FLAT)
     result = let_go(structure, sign * 1.2 * structure.critical_rotation, 5.0, 0.02)
     assert result.outcome == "overturned_rocking"
@@ -294,9 +286,7 @@ def test_a_release_from_beyond_theta_cr_has_passed_it_at_once(sign: float) -> No
 @pytest.mark.evidence("steps, events, energy", "exact")
 @pytest.mark.parametrize("limit", [2.0, 0.5])
 @pytest.mark.parametrize("share", [1.0, -1.0, 1.5, -7.0])
-def test_a_release_from_beyond_the_overturning_limit_is_refused(
-    limit: float, share: float
-) -> None:
+def test_a_release_from_beyond_the_overturning_limit_is_refused(limit, share):
     """It would have overturned before it began."""
     structure = podium(1, 0.15, 0.5)
     rotation = share * limit * structure.critical_rotation
@@ -309,7 +299,7 @@ def test_a_release_from_beyond_the_overturning_limit_is_refused(
 
 
 @pytest.mark.evidence("steps, events, energy", "exact")
-def test_a_release_from_just_below_the_limit_is_followed() -> None:
+def test_a_release_from_just_below_the_limit_is_followed():
     structure = podium(1, 0.15, 0.5)
     result = let_go(
         structure, 2.0 * structure.critical_rotation * (1.0 - 1e-12), 5.0, 0.02
@@ -318,13 +308,13 @@ def test_a_release_from_just_below_the_limit_is_followed() -> None:
     assert result.duration < 1e-4
 
 
-def kinds(result: TimeHistoryResult) -> list[str]:
+def kinds(result):
     return [event.kind for event in result.events]
 
 
 @pytest.mark.parametrize("rho", [FLAT, 0.25, 0.5, 1.5])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_a_push_of_g_tan_alpha_is_the_limit(rho: float, sign: float) -> None:
+def test_a_push_of_g_tan_alpha_is_the_limit(rho, sign):
     structure = podium(0, 0.15, rho)
     below, beyond = (
         time_history(
@@ -340,7 +330,7 @@ def test_a_push_of_g_tan_alpha_is_the_limit(rho: float, sign: float) -> None:
     assert beyond.trace.rotation[-1] * sign < 0.0  # the storey stays behind the ground
 
 
-def test_a_push_that_only_grazes_the_limit() -> None:
+def test_a_push_that_only_grazes_the_limit():
     """The margin of a building under a smooth load touches zero between two samples."""
     structure = podium(1, 0.15, 0.5)
     above = known(structure.superstructure)
@@ -355,7 +345,7 @@ def test_a_push_that_only_grazes_the_limit() -> None:
     limit = structure.uplift_acceleration * (1.0 + 2.0 * structure.gamma_total)
     sampled = limit / float(np.max(np.abs(q)))
 
-    def uplifts(factor: float, motion: GroundMotion = record) -> int:
+    def uplifts(factor, motion=record):
         return time_history(structure, motion.scaled(factor), QUIET).uplifts
 
     # between samples q is larger: the factor at which the first uplift appears
@@ -374,7 +364,7 @@ def test_a_push_that_only_grazes_the_limit() -> None:
     assert uplifts(high * (1.0 + 1e-6), finer) == 1
 
 
-def test_two_impacts_within_one_step() -> None:
+def test_two_impacts_within_one_step():
     """At re-contact impacts follow each other faster than the record's samples."""
     result = let_go(FRAME, 0.02, 40.0, 0.2, recontact_tolerance=1e-9, accuracy=16.0)
     fine = let_go(FRAME, 0.02, 40.0, 0.002, recontact_tolerance=1e-9)
@@ -388,23 +378,21 @@ def test_two_impacts_within_one_step() -> None:
     assert kinds(result).count("recontact") == 1
 
 
-def caught(
-    factor: float, at: list[float], shape: list[float], dt: float
-) -> TimeHistoryResult:
+def caught(factor, at, shape, dt):
     """A falling frame under a polygon of pushes at some samples."""
     times = np.arange(round(at[-1] / dt) + 1) * dt
     push = -factor * FRAME.uplift_acceleration * np.interp(times, at, shape)
     return time_history(FRAME, ground(push, dt), replace(QUIET, initial_rotation=0.01))
 
 
-def test_uplift_again_at_the_instant_of_recontact() -> None:
+def test_uplift_again_at_the_instant_of_recontact():
     """A falling storey that is caught just too late: it touches down with almost no velocity.
 
     The push would tilt it to the old side again, so beyond the impact it is pushed back, locks, and
     is lifted to the old side without time passing.
     """
 
-    def history(factor: float) -> TimeHistoryResult:
+    def history(factor):
         return caught(factor, [0.0, 0.05, 0.15, 0.8], [0.0, 0.0, 1.0, 1.0], DT)
 
     low, high = bisected(lambda factor: history(factor).impacts == 0, 1.0, 10.0)
@@ -418,10 +406,10 @@ def test_uplift_again_at_the_instant_of_recontact() -> None:
     )
 
 
-def test_a_dip_below_zero_and_back_within_one_step() -> None:
+def test_a_dip_below_zero_and_back_within_one_step():
     """Positive at both ends of the step, negative between: no sign change tells of the impact."""
 
-    def history(factor: float, parts: int) -> TimeHistoryResult:
+    def history(factor, parts):
         at = [0.0, 0.2, 0.4, 0.6, 0.8]
         return caught(factor, at, [0.0, 1.0, 1.0, 1.0, 0.0], 0.2 / parts)
 
@@ -439,7 +427,7 @@ def test_a_dip_below_zero_and_back_within_one_step() -> None:
 
 
 @pytest.mark.parametrize("rho", [FLAT, 0.5])
-def test_the_largest_tilt_may_lie_in_a_step_that_ends_on_an_impact(rho: float) -> None:
+def test_the_largest_tilt_may_lie_in_a_step_that_ends_on_an_impact(rho):
     """A push that hardly exceeds the limit: up, over the top and down again within one step."""
     structure = podium(0, 0.15, rho)
     peak = 1.02 * structure.uplift_acceleration

@@ -3,10 +3,7 @@
 And what a change of side, of scale and of mass must not change.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -35,22 +32,22 @@ from rpscli.model.devices import (
     ViscousDamper,
 )
 from rpscli.model.impact import ImpactLaw
-from rpscli.model.podium import Device, PodiumStructure
+from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
 from rpscli.records.ground_motion import MotionComponents
 
-ARCS: dict[str, Any] = {"tan_wedge": 0.3, "rho": 0.5}
-SPHERICAL: dict[str, Any] = {"tan_alpha": 0.0, "tan_wedge": 0.3, "rho": 0.8}
+ARCS = {"tan_wedge": 0.3, "rho": 0.5}
+SPHERICAL = {"tan_alpha": 0.0, "tan_wedge": 0.3, "rho": 0.8}
 SOFT, EDGES = (Contact(kind, period_ratio=1.2) for kind in ("plane", "edges"))
 W = frame(3, 3.0).weight
 FRICTION, ROLLING = FrictionDamper(0.02 * W), RollingResistance(0.02)
 
 
-def usual(*devices: Device, **options: Any) -> PodiumStructure:
+def usual(*devices, **options):
     return frame(3, 3.0, contact_time=2e-3, devices=devices, **options)
 
 
-def of_its_own(*, sprung: bool, yields: bool) -> PodiumStructure:
+def of_its_own(*, sprung, yields):
     """With floors on vertical springs, that yield, or both."""
     plain = usual(**ARCS)
     above = replace(known(plain.superstructure), vertical_period=0.1 if sprung else None)
@@ -59,7 +56,7 @@ def of_its_own(*, sprung: bool, yields: bool) -> PodiumStructure:
     return replace(plain, superstructure=above)
 
 
-KINDS: dict[str, PodiumStructure] = {
+KINDS = {
     "flat": usual(),
     "arcs": usual(**ARCS),
     "viscous": usual(ViscousDamper(0.2 * W, 0.5), **ARCS),
@@ -81,7 +78,7 @@ KINDS: dict[str, PodiumStructure] = {
 }
 
 
-def shaken(seed: int, *, pairs: bool, sign: float = 1.0) -> MotionComponents:
+def shaken(seed, *, pairs, sign=1.0):
     """Eight seconds that lift the columns, with a vertical motion."""
     x, y, up = (
         ground(factor * waves(8.0, 0.01, 3.0, seed + i).acceleration, 0.01)
@@ -102,7 +99,7 @@ MIRRORED = (
 @of_kinds
 @needs_compiled_kernels
 @in_planes
-def test_mirrored_and_in_company(kind: str, pairs: bool) -> None:
+def test_mirrored_and_in_company(kind, pairs):
     """Bit for bit: a mirrored motion, and a history among others in lanes."""
     motions = [shaken(3 * seed, pairs=pairs) for seed in range(8)]
     motions[7] = shaken(12, pairs=pairs, sign=-1.0)  # of the fourth
@@ -121,7 +118,7 @@ def test_mirrored_and_in_company(kind: str, pairs: bool) -> None:
 @needs_compiled_kernels
 @in_planes
 @pytest.mark.evidence("steps, events, energy", "exact")
-def test_energy_is_booked_whole(kind: str, pairs: bool) -> None:
+def test_energy_is_booked_whole(kind, pairs):
     """To the accuracy of the rule, and by its order better with half the step."""
     residuals = []
     for accuracy in (1.0, 2.0):
@@ -136,7 +133,7 @@ def test_energy_is_booked_whole(kind: str, pairs: bool) -> None:
 
 @of_kinds
 @needs_compiled_kernels
-def test_nothing_new_comes_after_the_end(kind: str) -> None:
+def test_nothing_new_comes_after_the_end(kind):
     motion, structure = shaken(8, pairs=False), KINDS[kind]
     auto = time_history(structure, motion, with_fixed_base=False).history
     assert auto["time"] < 60.0
@@ -160,7 +157,7 @@ FINE = TimeHistorySettings(free_vibration=0.0, accuracy=4.0)
 @of_kinds
 @needs_compiled_kernels
 @pytest.mark.evidence("both components", "exact")
-def test_one_component_is_the_planar_program(kind: str) -> None:
+def test_one_component_is_the_planar_program(kind):
     """Along x nothing moves in y; rotations until it rests, what floors and devices saw."""
     structure, still = KINDS[kind], np.zeros(len(X))
     history = followed(structure, pair(X, still, 0.01), FINE)
@@ -190,7 +187,7 @@ def test_one_component_is_the_planar_program(kind: str) -> None:
 @pytest.mark.parametrize(
     "kind", [kind for kind in KINDS if kind not in ("yields", "both")]
 )
-def test_no_axis_is_special(kind: str) -> None:
+def test_no_axis_is_special(kind):
     """Turned by any angle, the pair turns the result; storeys yield along both axes alone."""
     turn = np.exp(0.64j)
     turned = turn * (X + 1j * Y)
@@ -228,9 +225,7 @@ of_structures = pytest.mark.parametrize(
 @pytest.mark.evidence("equation of motion", "exact")
 @of_structures
 @pytest.mark.parametrize("start", [0.0, 0.3])
-def test_without_gravity_the_push_chooses_the_side(
-    structure: PodiumStructure, start: float
-) -> None:
+def test_without_gravity_the_push_chooses_the_side(structure, start):
     """Both margins against uplift are negative at once."""
     sway = start + 0.4 * np.linspace(0.0, 1.0, 30) ** 2
     falling = ground(np.full(30, -1.3 * structure.gravity), 0.02)
@@ -244,9 +239,7 @@ def test_without_gravity_the_push_chooses_the_side(
     assert np.array_equal(here.trace.rotation, -there.trace.rotation)
 
 
-def with_building(
-    structure: PodiumStructure, mass: float, stiffness: float
-) -> PodiumStructure:
+def with_building(structure, mass, stiffness):
     """All masses times `mass`, all storey stiffnesses times `stiffness`."""
     above = structure.superstructure
     if above is not None:
@@ -261,7 +254,7 @@ def with_building(
 
 @pytest.mark.evidence("equation of motion", "exact")
 @of_structures
-def test_lengths_times_l_and_times_times_root_l(structure: PodiumStructure) -> None:
+def test_lengths_times_l_and_times_times_root_l(structure):
     scale = 2.7
     bearing = replace(
         structure.bearing, semi_diagonal=scale * structure.bearing.semi_diagonal
@@ -286,7 +279,7 @@ def test_lengths_times_l_and_times_times_root_l(structure: PodiumStructure) -> N
 
 @pytest.mark.evidence("equation of motion", "exact")
 @of_structures
-def test_masses_and_stiffnesses_times_anything(structure: PodiumStructure) -> None:
+def test_masses_and_stiffnesses_times_anything(structure):
     factor = 3.1
     heavy = with_building(structure, factor, factor)
     one, two = (
@@ -306,9 +299,7 @@ def test_masses_and_stiffnesses_times_anything(structure: PodiumStructure) -> No
 @pytest.mark.evidence("equation of motion", "exact")
 @pytest.mark.evidence("vertical motion", "exact")
 @of_structures
-def test_a_constant_vertical_acceleration_is_a_change_of_gravity(
-    structure: PodiumStructure,
-) -> None:
+def test_a_constant_vertical_acceleration_is_a_change_of_gravity(structure):
     """Up to the last sample, after which the ground stands still."""
     settings = replace(SETTINGS, free_vibration=0.0)
     rising = ground(np.full(RECORD.npts, 1.5), RECORD.dt)
@@ -322,7 +313,7 @@ def test_a_constant_vertical_acceleration_is_a_change_of_gravity(
 
 
 @pytest.mark.evidence("equation of motion", "exact")
-def test_a_rigid_building_moves_like_a_heavier_cap_beam() -> None:
+def test_a_rigid_building_moves_like_a_heavier_cap_beam():
     """As the periods shrink, the storey becomes the frame with gamma (1 + eta)."""
     frame = PodiumStructure(podium(0, 0.15, 0.5).bearing, 2e4, 2e5 * 3.0)
     assert frame.gamma == podium(2).gamma_total
@@ -343,7 +334,7 @@ def test_a_rigid_building_moves_like_a_heavier_cap_beam() -> None:
 
 
 @pytest.mark.evidence("equation of motion", "exact")
-def test_quiet_before_the_record_only_delays_the_history() -> None:
+def test_quiet_before_the_record_only_delays_the_history():
     structure = podium(3, 0.2, 0.5)
     later = ground(np.pad(RECORD.acceleration, (17, 0)), RECORD.dt)
     one, two = (time_history(structure, record, SETTINGS) for record in (RECORD, later))

@@ -6,19 +6,14 @@ Lagrange's equations in the tilt, floor displacements and floor lifts, by an ada
 vertical modes added.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from paper_structures import (
-    Array,
-    RecordLoader,
     building,
     ground,
     known,
@@ -30,7 +25,6 @@ from paper_structures import (
 )
 
 from rpscli.analyses.demand import Request, demands
-from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import denser_trace, time_history
 from rpscli.constants import STANDARD_GRAVITY
@@ -44,9 +38,9 @@ from rpscli.model.superstructure import (
     profile_stiffnesses,
 )
 from rpscli.physics.state import IMPACT, PASS, UPLIFT
-from rpscli.records.ground_motion import GroundMotion, MotionComponents
+from rpscli.records.ground_motion import MotionComponents
 
-REFERENCES: dict[str, list[dict[str, Any]]] = json.loads(
+REFERENCES = json.loads(
     (Path(__file__).parents[1] / "oracles" / "floors_references.json").read_text()
 )
 FLEXIBLE = ImpactLaw()
@@ -54,7 +48,7 @@ PLANE = {each["name"]: each for each in REFERENCES["plane"]}
 BOTH = {each["name"]: each for each in REFERENCES["both"]}
 
 
-def structure_of(given: dict[str, Any]) -> PodiumStructure:
+def structure_of(given):
     """A podium of the references."""
     n, masses = given["n"], np.full(given["n"], given["mass"])
     modal, vertical = given["damping"] == "modal", given["T_v"] is not None
@@ -78,14 +72,14 @@ def structure_of(given: dict[str, Any]) -> PodiumStructure:
     return PodiumStructure(bearing, beam / given["gamma"], beam, above, law)
 
 
-def window(record: GroundMotion, given: dict[str, Any], scale: float) -> GroundMotion:
+def window(record, given, scale):
     """A part of a record, its first sample zero."""
     found = part(record, given["from_s"], given["seconds"], scale).acceleration.copy()
     found[0] = 0.0
     return ground(found, record.dt)
 
 
-def motion_of(given: dict[str, Any], fema_record: RecordLoader) -> MotionComponents:
+def motion_of(given, fema_record):
     """What shook a podium of the references."""
     if "pair" in given:
         name = given["pair"].split(":")[1].split("?")[0]
@@ -103,9 +97,7 @@ def motion_of(given: dict[str, Any], fema_record: RecordLoader) -> MotionCompone
     return MotionComponents(x, vertical=above)
 
 
-def run(
-    given: dict[str, Any], fema_record: RecordLoader, accuracy: float = 1.0
-) -> TimeHistoryResult:
+def run(given, fema_record, accuracy=1.0):
     """A history of the references, by this program."""
     motion = motion_of(given, fema_record)
     free = max(given["seconds"] - motion.horizontal.duration, 0.0)
@@ -122,7 +114,7 @@ def run(
 @pytest.mark.evidence("floors on vertical springs", "program")
 @pytest.mark.evidence("storeys that yield", "program")
 @pytest.mark.parametrize("name", PLANE)
-def test_histories_of_another_program(name: str, fema_record: RecordLoader) -> None:
+def test_histories_of_another_program(name, fema_record):
     given, found = PLANE[name]["given"], PLANE[name]["found"]
     # towards its end one parts from its double with half the step in the fifth digit
     result = run(given, fema_record, 2.0 if name == "vy3" else 1.0)
@@ -172,7 +164,7 @@ def test_histories_of_another_program(name: str, fema_record: RecordLoader) -> N
 @needs_compiled_kernels
 @pytest.mark.evidence("floors on vertical springs", "program")
 @pytest.mark.parametrize("name", BOTH)
-def test_pairs_of_another_program(name: str, fema_record: RecordLoader) -> None:
+def test_pairs_of_another_program(name, fema_record):
     given, found = BOTH[name]["given"], BOTH[name]["found"]
     result = run(given, fema_record)
     left = result.history
@@ -202,7 +194,7 @@ def test_pairs_of_another_program(name: str, fema_record: RecordLoader) -> None:
     assert energy.impact == pytest.approx(spent["lost"], abs=1e-5 * spent["input"])
 
 
-def usual(law: ImpactLaw = FLEXIBLE, **of_building: Any) -> PodiumStructure:
+def usual(law=FLEXIBLE, **of_building):
     """Three storeys whose floors may stand on springs, and that may yield."""
     above = replace(building(3), **of_building)
     return podium(3, 0.15, 0.5, superstructure=above, law=law)
@@ -210,7 +202,7 @@ def usual(law: ImpactLaw = FLEXIBLE, **of_building: Any) -> PodiumStructure:
 
 @needs_compiled_kernels
 @pytest.mark.evidence("floors on vertical springs", "exact")
-def test_stiff_springs_are_floors_that_ride_on_the_beam() -> None:
+def test_stiff_springs_are_floors_that_ride_on_the_beam():
     """Damped within an impact, they give back its whole impulse: the limit of (14.7) is (4.8)."""
     riding, *stiff = (
         let_go(usual(vertical_period=T, vertical_damping=0.3), 0.06, 2.4).trace.rotation
@@ -221,12 +213,12 @@ def test_stiff_springs_are_floors_that_ride_on_the_beam() -> None:
     assert off[0] > 1.5 * off[1] > 2.25 * off[2]
 
 
-SPRINGS: dict[str, Any] = {"vertical_period": 0.1}
+SPRINGS = {"vertical_period": 0.1}
 STRENGTHS = np.array([1.15e6, 9.0e5, 4.8e5])
-BOTH_KINDS: dict[str, Any] = {**SPRINGS, "strengths": STRENGTHS, "hardening": 0.05}
+BOTH_KINDS = {**SPRINGS, "strengths": STRENGTHS, "hardening": 0.05}
 
 
-def shaken(seed: int) -> MotionComponents:
+def shaken(seed):
     """Eight seconds that lift the columns, with a vertical motion."""
     peak = 2.0 * STANDARD_GRAVITY * 0.15
     up = ground(0.3 * waves(8.0, 0.01, peak, seed + 2).acceleration, 0.01)
@@ -235,7 +227,7 @@ def shaken(seed: int) -> MotionComponents:
 
 @needs_compiled_kernels
 @pytest.mark.evidence("storeys that yield", "exact")
-def test_the_path_of_plastic_drifts() -> None:
+def test_the_path_of_plastic_drifts():
     """Karush-Kuhn-Tucker at every sample: within the range, and moved by its ends only."""
     result = time_history(
         usual(**BOTH_KINDS), shaken(5), TimeHistorySettings(free_vibration=1.0)
@@ -256,7 +248,7 @@ def test_the_path_of_plastic_drifts() -> None:
 
 
 @needs_compiled_kernels
-def test_a_building_that_never_yields_keeps_its_bits() -> None:
+def test_a_building_that_never_yields_keeps_its_bits():
     never = {**BOTH_KINDS, "strengths": np.full(3, 1e9)}
     one, other = (time_history(usual(**of), shaken(5)).history for of in (SPRINGS, never))
     for name in ("max_theta", "storey_shear", "heavy_top", "energy_lost"):
@@ -271,7 +263,7 @@ def test_a_building_that_never_yields_keeps_its_bits() -> None:
 @needs_compiled_kernels
 @pytest.mark.long
 @pytest.mark.evidence("floors on vertical springs", "program")
-def test_forces_of_columns_under_recorded_pairs(fema_record: RecordLoader) -> None:
+def test_forces_of_columns_under_recorded_pairs(fema_record):
     """Of 22 pairs, 40 s: another program's medians of N/W and base shear; no number of t_c."""
     forty = [
         [part(fema_record(f"farfield/{i}/{way}"), 0.0, 40.0) for way in "ab"]
@@ -280,7 +272,7 @@ def test_forces_of_columns_under_recorded_pairs(fema_record: RecordLoader) -> No
     motions = [MotionComponents(x, y=y) for x, y in forty]
     settings = TimeHistorySettings(free_vibration=0.0)
 
-    def of_pairs(period: float | None, contact_time: float) -> tuple[Array, Array, Any]:
+    def of_pairs(period, contact_time):
         made = usual(ImpactLaw(contact_time=contact_time), vertical_period=period)
         structure = replace(
             made, bearing=replace(made.bearing, inertia_ratio_axial=0.011)
@@ -314,7 +306,7 @@ def test_forces_of_columns_under_recorded_pairs(fema_record: RecordLoader) -> No
 
 
 @needs_compiled_kernels
-def test_contact_that_is_lost_asks_for_friction_without_bound() -> None:
+def test_contact_that_is_lost_asks_for_friction_without_bound():
     """Floors on springs lift the beam for instants; a moderate demand is told with its time."""
     strong = replace(usual(**SPRINGS), friction=0.5)
     peaks = [time_history(strong, shaken(seed)) for seed in (5, 8, 11)]

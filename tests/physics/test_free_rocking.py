@@ -1,7 +1,5 @@
 """Free motions: periods, decay, rest, energy, when `auto` may stop; pulses that overturn blocks."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -10,7 +8,6 @@ import pytest
 from paper_structures import (
     FLAT,
     SLENDER,
-    Array,
     bisected,
     block,
     building,
@@ -26,27 +23,25 @@ from scipy.optimize import brentq
 from shown_commands import VERIFICATION, told
 
 from rpscli.analyses.demand import demand
-from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.bearing import Bearing
-from rpscli.model.impact import ImpactKind, ImpactLaw
+from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import RayleighDamping
 from rpscli.physics.state import FULL_CONTACT
-from rpscli.records.ground_motion import GroundMotion
 
 LINEAR = 3.0 * SLENDER**2
 """What the linear theory leaves out, relative: a few alpha^2."""
 
 
-def impact_times(result: TimeHistoryResult) -> list[float]:
+def impact_times(result):
     return [event.time for event in result.events if event.kind == "impact"]
 
 
 @pytest.mark.evidence("free-standing blocks", "exact")
 @pytest.mark.parametrize("rho", [FLAT, 0.25, 0.5, 1.5])
-def test_slender_columns_rock_with_the_linear_periods(rho: float) -> None:
+def test_slender_columns_rock_with_the_linear_periods(rho):
     """x'' = -w^2 (alpha + kappa x) between impacts, w^2 = g (1+2 gamma)/(R (Io+4 gamma))."""
     alpha, start, e, gamma = SLENDER, 0.5 * SLENDER, 0.9, 10.0
     kappa = 2.0 * rho - 1.0
@@ -56,12 +51,12 @@ def test_slender_columns_rock_with_the_linear_periods(rho: float) -> None:
     structure = PodiumStructure(bearing, 2e4, gamma * 2e4, None, ImpactLaw("value", e))
     w2 = structure.gravity / 1.5 * (1.0 + 2.0 * gamma) / (4.0 / 3.0 + 4.0 * gamma)
 
-    def amplitude(impacts: int) -> float:
+    def amplitude(impacts):
         """Where alpha x + kappa x^2/2 has lost the factor e^2 at each impact."""
         height = e ** (2 * impacts) * (alpha * start + 0.5 * kappa * start**2)
         return 2.0 * height / (alpha + math.sqrt(alpha**2 + 2.0 * kappa * height))
 
-    def quarter(x: float) -> float:
+    def quarter(x):
         """Time from rest at x to zero."""
         if kappa == 0.0:
             return math.sqrt(2.0 * x / (alpha * w2))
@@ -76,7 +71,7 @@ def test_slender_columns_rock_with_the_linear_periods(rho: float) -> None:
 
 @pytest.mark.parametrize("rho", [FLAT, 0.5])
 @pytest.mark.parametrize("storeys", [0, 2])
-def test_nothing_moves_without_a_push(storeys: int, rho: float) -> None:
+def test_nothing_moves_without_a_push(storeys, rho):
     result = time_history(podium(storeys, 0.15, rho), ground(np.zeros(101), 0.02))
     assert (result.outcome, result.events, result.max_rotation) == ("at_rest", (), 0.0)
     assert not np.any(result.trace.rotation)
@@ -93,7 +88,7 @@ def test_nothing_moves_without_a_push(storeys: int, rho: float) -> None:
 @pytest.mark.evidence("steps, events, energy", "exact")
 @needs_compiled_kernels
 @pytest.mark.parametrize("rho", [FLAT, 0.5, 1.5])
-def test_without_damping_and_with_e_one_energy_stays(rho: float) -> None:
+def test_without_damping_and_with_e_one_energy_stays(rho):
     above = building(2, damping=RayleighDamping(0.0))
     structure = podium(2, 0.15, rho, law=ImpactLaw("value", 1.0), superstructure=above)
     steps, drift = [], []
@@ -113,7 +108,7 @@ def test_without_damping_and_with_e_one_energy_stays(rho: float) -> None:
 
 @needs_compiled_kernels
 @pytest.mark.parametrize(("storeys", "period"), [(1, 0.3), (3, 0.05)])
-def test_undamped_stiff_buildings_do_not_drift(storeys: int, period: float) -> None:
+def test_undamped_stiff_buildings_do_not_drift(storeys, period):
     """Two minutes of rocking, in which nothing but the steps takes energy from the fast modes."""
     above = building(storeys, period, RayleighDamping(0.0))
     structure = podium(storeys, superstructure=above, law=ImpactLaw("value", 0.9999))
@@ -125,7 +120,7 @@ def test_undamped_stiff_buildings_do_not_drift(storeys: int, period: float) -> N
 
 @pytest.mark.evidence("free-standing blocks", "exact")
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8])
-def test_impacts_shrink_and_come_to_an_end(tolerance: float) -> None:
+def test_impacts_shrink_and_come_to_an_end(tolerance):
     """Near theta = 0 each impact leaves e^2 of the height, until it is below the tolerance."""
     structure = podium(0, 0.15, FLAT)
     alpha, e = structure.bearing.alpha, structure.restitution
@@ -140,7 +135,7 @@ def test_impacts_shrink_and_come_to_an_end(tolerance: float) -> None:
     assert ratios[1:] / ratios[:-1] == pytest.approx(e, rel=2e-3)  # height/alpha <= 1e-3
 
 
-LAWS: list[tuple[ImpactKind, float]] = [
+LAWS = [
     ("rigid", FLAT),
     ("flexible", 0.5),
     ("value", FLAT),
@@ -148,7 +143,7 @@ LAWS: list[tuple[ImpactKind, float]] = [
 TOLERANCES = np.array([1e-5, 1e-6, 1e-7, 1e-8])
 
 
-def vibration(structure: PodiumStructure, tolerance: float) -> Array:
+def vibration(structure, tolerance):
     """Drifts of a released structure long after it came to rest, while the building rings on."""
     result = let_go(
         structure, 0.02, 8.8, 0.02, recontact_tolerance=tolerance, accuracy=4.0
@@ -161,7 +156,7 @@ def vibration(structure: PodiumStructure, tolerance: float) -> Array:
 @needs_compiled_kernels
 @pytest.mark.evidence("impact laws", "exact")
 @pytest.mark.parametrize(("law", "rho"), LAWS)
-def test_errors_are_in_proportion_to_the_tolerance(law: ImpactKind, rho: float) -> None:
+def test_errors_are_in_proportion_to_the_tolerance(law, rho):
     """The excursions left out change the drift rates by about u_b', which is added (3.5).
 
     u_b' is of the size 2 R sqrt(2 theta'' tol alpha). What is left out besides is what springs do
@@ -174,7 +169,7 @@ def test_errors_are_in_proportion_to_the_tolerance(law: ImpactKind, rho: float) 
     assert gaps[1] < 1e-3 * np.max(np.abs(exact))  # at the default tolerance
 
 
-def random_case(seed: int) -> tuple[PodiumStructure, GroundMotion]:
+def random_case(seed):
     """A building of the paper and a short record that leaves it rocking."""
     rng = np.random.default_rng(seed)
     storeys, rho = int(rng.integers(1, 10)), float(rng.choice([FLAT, 0.26, 0.5, 1.5]))
@@ -186,7 +181,7 @@ def random_case(seed: int) -> tuple[PodiumStructure, GroundMotion]:
 
 @needs_compiled_kernels
 @pytest.mark.parametrize("seed", [*range(40), 409])
-def test_auto_finds_the_largest_demands(seed: int) -> None:
+def test_auto_finds_the_largest_demands(seed):
     """Seed 409 has its largest floor acceleration at an impact after long quiet rocking."""
     short, long = (
         time_history(*random_case(seed), settings, with_fixed_base=False)
@@ -209,7 +204,7 @@ def test_auto_finds_the_largest_demands(seed: int) -> None:
 
 
 @needs_compiled_kernels
-def test_not_all_of_those_cases_are_trivial() -> None:
+def test_not_all_of_those_cases_are_trivial():
     results = [
         time_history(*random_case(seed), with_fixed_base=False) for seed in range(40)
     ]
@@ -219,7 +214,7 @@ def test_not_all_of_those_cases_are_trivial() -> None:
     assert sum(r.uplifts > 1 for r in survived) > 5
 
 
-def test_auto_waits_for_the_swing_of_a_building_that_never_lifts() -> None:
+def test_auto_waits_for_the_swing_of_a_building_that_never_lifts():
     """A kick at the very end of a finely sampled record: all maxima come later."""
     structure = podium(3)
     record = ground(np.concatenate((np.zeros(5), np.full(5, 1.0))), 0.001)
@@ -244,7 +239,7 @@ CHORDS = (2.0 * math.pi * PULSE_DT) ** 2 / 8.0
 """A sine sampled every DT is cut off by at most this share: 1.2e-6."""
 
 
-def overturns(structure: PodiumStructure, pulse: Array) -> bool:
+def overturns(structure, pulse):
     # near the limit the distance to it grows as exp(p t): after 18/p by 6e7
     settings = TimeHistorySettings(
         free_vibration=18.0 / structure.rigid_frequency_parameter
@@ -254,9 +249,7 @@ def overturns(structure: PodiumStructure, pulse: Array) -> bool:
     )
 
 
-def least_amplitude(
-    structure: PodiumStructure, shape: Array, low: float, high: float
-) -> float:
+def least_amplitude(structure, shape, low, high):
     """Bisection between an amplitude that is withstood and one that overturns [m/s2]."""
     assert not overturns(structure, low * shape)
     assert overturns(structure, high * shape)
@@ -267,11 +260,11 @@ def least_amplitude(
 @needs_compiled_kernels
 @pytest.mark.evidence("free-standing blocks", "exact")
 @pytest.mark.parametrize("size", [0.4, 1.5, 4.0])
-def test_half_sine_without_impact(size: float) -> None:
+def test_half_sine_without_impact(size):
     structure = slender_block(size)
     p, w = math.sqrt(0.75 * structure.gravity / size), 2.0 * math.pi
 
-    def excess(psi: float) -> float:
+    def excess(psi):
         return w / p * math.sin(psi) - math.cos(psi) - math.exp(-p / w * (math.pi - psi))
 
     expected = 1.0 / math.sin(brentq(excess, 1e-3, 0.5 * math.pi))
@@ -292,9 +285,7 @@ gives 0.55459 g for the first of them where 0.5545 g is printed as falling."""
     [(0.2, 0.6, HALF_SINE, 0.5545), (0.5, 1.5, SINE, 0.4514)],
     ids=["half-sine", "sine"],
 )
-def test_makris_and_roussos_linear(
-    half_width: float, half_height: float, shape: Array, falls: float
-) -> None:
+def test_makris_and_roussos_linear(half_width, half_height, shape, falls):
     """Geotechnique 50 (2000): the linear block has the real one's p, e and alpha."""
     real = replace(block(half_width, half_height), gravity=9.81)
     size = math.hypot(half_width, half_height)
@@ -316,9 +307,7 @@ def test_makris_and_roussos_linear(
     [(SINE, 0.46873, 1e-5), (COSINE, 0.625, PUBLISHED_STEP)],
     ids=["sine", "cosine"],
 )
-def test_makris_and_roussos_nonlinear(
-    shape: Array, published: float, tolerance: float
-) -> None:
+def test_makris_and_roussos_nonlinear(shape, published, tolerance):
     structure = replace(block(0.5, 1.5), gravity=9.81)
     least = least_amplitude(structure, structure.gravity * shape, 0.4, 0.7)
     assert least == pytest.approx(published, abs=tolerance)

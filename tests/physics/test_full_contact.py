@@ -1,14 +1,12 @@
 """Full contact is the linear fixed-base building."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from paper_structures import building, ground, linear_response, podium, waves
 
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
-from rpscli.model.superstructure import ModalDamping, RayleighDamping, Superstructure
+from rpscli.model.superstructure import ModalDamping, RayleighDamping
 
 BUILDINGS = [
     building(1),
@@ -28,7 +26,7 @@ of_buildings = pytest.mark.parametrize(
 
 @pytest.mark.evidence("buildings on bearings under earthquakes", "exact")
 @of_buildings
-def test_full_contact_equals_lsim(above: Superstructure) -> None:
+def test_full_contact_equals_lsim(above):
     n, dt = above.storeys, 0.02
     record = waves(4.0, dt, 0.2, seed=n)
     settings = TimeHistorySettings(free_vibration=1.0)
@@ -56,7 +54,7 @@ def test_full_contact_equals_lsim(above: Superstructure) -> None:
 
 
 @of_buildings
-def test_the_fixed_base_yardstick_is_the_same_building(above: Superstructure) -> None:
+def test_the_fixed_base_yardstick_is_the_same_building(above):
     record = waves(4.0, 0.02, 0.2, seed=4)
     result = time_history(podium(above.storeys, superstructure=above), record)
     assert result.outcome == "at_rest"
@@ -88,9 +86,7 @@ MORE = [
     "above", BUILDINGS + MORE, ids=lambda b: f"{b.storeys}-{b.damping}"
 )
 @pytest.mark.parametrize("dt", [0.02, 0.05])
-def test_the_energy_of_full_contact_is_accounted_for(
-    above: Superstructure, dt: float
-) -> None:
+def test_the_energy_of_full_contact_is_accounted_for(above, dt):
     record = waves(4.0, dt, 0.2, seed=4)
     result = time_history(podium(above.storeys, superstructure=above), record)
     energy = result.energy
@@ -104,9 +100,7 @@ def test_the_energy_of_full_contact_is_accounted_for(
 
 @pytest.mark.parametrize("slenderness", [0.05, 0.07, 0.1, 0.13, 0.15, 0.2, 0.3])
 @pytest.mark.parametrize("excess", [-1e-15, 0.0, 1e-15])
-def test_a_peak_that_equals_the_limit_is_full_contact(
-    slenderness: float, excess: float
-) -> None:
+def test_a_peak_that_equals_the_limit_is_full_contact(slenderness, excess):
     frame = podium(0, slenderness, 0.5)
     limit = frame.uplift_acceleration * (1.0 + excess)
     for shape in ([0.0, 0.5, 1.0, 0.5], [0.0, 1.0, 1.0, 1.0], [0.0, -1.0, 1.0, -1.0]):
@@ -115,7 +109,7 @@ def test_a_peak_that_equals_the_limit_is_full_contact(
 
 
 @pytest.mark.parametrize("excess", [1e-12, 1e-10, 1e-8, 1e-6, 1e-4])
-def test_a_peak_beyond_the_limit_uplifts_and_lands(excess: float) -> None:
+def test_a_peak_beyond_the_limit_uplifts_and_lands(excess):
     frame = podium(0, 0.15, 0.5)
     limit = frame.uplift_acceleration * (1.0 + excess)
     result = time_history(frame, ground(np.multiply([0.0, 0.5, 1.0, 0.5], limit), 0.1))

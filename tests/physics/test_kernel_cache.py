@@ -1,7 +1,5 @@
 """Where compiled kernels are kept, that other sources never find them, and what Ctrl-C leaves."""
 
-from __future__ import annotations
-
 import ast
 import errno
 import inspect
@@ -13,10 +11,8 @@ import stat
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -40,7 +36,7 @@ def twice(x: float) -> float:
 
 
 @pytest.fixture(autouse=True)
-def fresh_folder(monkeypatch: pytest.MonkeyPatch) -> Iterator[pytest.MonkeyPatch]:
+def fresh_folder(monkeypatch):
     """The folder is remembered for the process; each test looks for it anew."""
     cache_folder.cache_clear()
     yield monkeypatch
@@ -48,7 +44,7 @@ def fresh_folder(monkeypatch: pytest.MonkeyPatch) -> Iterator[pytest.MonkeyPatch
     cache_folder.cache_clear()
 
 
-def test_one_process_keeps_machine_code_at_a_time(tmp_path: Path) -> None:
+def test_one_process_keeps_machine_code_at_a_time(tmp_path):
     with (
         alone_in(tmp_path),
         closing(sqlite3.connect(tmp_path / "saving", timeout=0)) as other,
@@ -58,8 +54,8 @@ def test_one_process_keeps_machine_code_at_a_time(tmp_path: Path) -> None:
 
 
 def test_the_place_is_that_of_the_user_then_of_the_system_then_none(
-    fresh_folder: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+    fresh_folder, tmp_path
+):
     (tmp_path / "file").write_text("no folder")
     nowhere = str(tmp_path / "file" / "below")
     fresh_folder.setattr(tempfile, "gettempdir", lambda: nowhere)
@@ -83,9 +79,7 @@ owners = pytest.mark.skipif(
 
 @owners
 @pytest.mark.parametrize("mode", [0o777, 0o775, 0o722])
-def test_a_place_that_others_may_write_to_is_not_used(
-    fresh_folder: pytest.MonkeyPatch, tmp_path: Path, mode: int
-) -> None:
+def test_a_place_that_others_may_write_to_is_not_used(fresh_folder, tmp_path, mode):
     """Machine code from there is run."""
     fresh_folder.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path / "shared"))
@@ -106,9 +100,7 @@ def test_a_place_that_others_may_write_to_is_not_used(
 
 
 @owners
-def test_a_temporary_folder_that_somebody_else_made_is_not_used(
-    fresh_folder: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_a_temporary_folder_that_somebody_else_made_is_not_used(fresh_folder, tmp_path):
     (tmp_path / "file").write_text("no folder")
     fresh_folder.setenv("RPS_CACHE_DIR", "")
     fresh_folder.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
@@ -134,14 +126,12 @@ def test_a_temporary_folder_that_somebody_else_made_is_not_used(
         "compiler/values.py",
     ],
 )
-def test_the_folder_is_named_after_the_sources(
-    fresh_folder: pytest.MonkeyPatch, tmp_path: Path, source: str
-) -> None:
+def test_the_folder_is_named_after_the_sources(fresh_folder, tmp_path, source):
     """A changed kernel, or compiler, must not meet machine code of the old one."""
     fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path / "cache"))
     places = [tmp_path / place.name for place in (SOURCES, *OTHERS)]
     for place, copy in zip((SOURCES, *OTHERS), places, strict=True):
-        (shutil.copytree if place.is_dir() else shutil.copy)(place, copy)  # type: ignore[operator]
+        (shutil.copytree if place.is_dir() else shutil.copy)(place, copy)
     fresh_folder.setattr(kernels, "SOURCES", places[0])
     fresh_folder.setattr(kernels, "OTHERS", tuple(places[1:]))
     before = known(cache_folder())
@@ -154,7 +144,7 @@ def test_the_folder_is_named_after_the_sources(
     assert known(cache_folder()) != before
 
 
-def test_what_physics_imports_decides_about_no_number_but_for_the_constants() -> None:
+def test_what_physics_imports_decides_about_no_number_but_for_the_constants():
     imported = {
         name
         for source in SOURCES.rglob("*.py")
@@ -171,14 +161,14 @@ def test_what_physics_imports_decides_about_no_number_but_for_the_constants() ->
     }
 
 
-def run_of_kernels(cache: Path, **more: str) -> str:
+def run_of_kernels(cache, **more):
     """What a process prints that computes one history, with its cache in a folder."""
     script = "from physics import test_without_compilation as t; print(t.everything(1)['several'])"
     return printed_by("-c", script, RPS_CACHE_DIR=str(cache), **more)
 
 
 @needs_compiled_kernels
-def test_processes_that_compile_at_once_leave_one_whole_kernel(tmp_path: Path) -> None:
+def test_processes_that_compile_at_once_leave_one_whole_kernel(tmp_path):
     """Four of them; and a fifth takes what they left."""
     with ThreadPoolExecutor(4) as pool:
         four = list(pool.map(lambda _: run_of_kernels(tmp_path), range(4)))
@@ -193,22 +183,23 @@ def test_processes_that_compile_at_once_leave_one_whole_kernel(tmp_path: Path) -
 
 @needs_compiled_kernels
 @pytest.mark.posix
-def test_a_cache_that_cannot_be_written_stops_nothing(tmp_path: Path) -> None:
+def test_a_cache_that_cannot_be_written_stops_nothing(tmp_path):
     """A home that is read only, before and after it holds the kernel; root may write anyway."""
     cache = tmp_path / "cache"
     cache.mkdir(mode=0o500)
     elsewhere = {"XDG_CACHE_HOME": str(tmp_path / "other")}
-    assert run_of_kernels(cache, **elsewhere) == run_of_kernels(tmp_path / "fresh")
+    first = run_of_kernels(cache, **elsewhere)
+    assert run_of_kernels(tmp_path / "fresh") == first
     (kept,) = (tmp_path / "fresh").glob("kernels-*")
     kept.chmod(0o500)
-    assert run_of_kernels(tmp_path / "fresh") == run_of_kernels(cache, **elsewhere)
+    assert run_of_kernels(tmp_path / "fresh") == first
 
 
 @needs_compiled_kernels
-def test_damaged_machine_code_is_made_anew(tmp_path: Path) -> None:
+def test_damaged_machine_code_is_made_anew(tmp_path):
     made = []
 
-    def make() -> str:
+    def make():
         made.append(True)
         return program_of(twice)
 
@@ -223,7 +214,7 @@ def test_damaged_machine_code_is_made_anew(tmp_path: Path) -> None:
     assert len(made) == 5
 
 
-def program_of(function: Callable[..., float]) -> str:
+def program_of(function):
     program = Program()
     program.add(function, [DOUBLE], "@f")
     return program.text()
@@ -258,7 +249,7 @@ for seed in range(200):
 
 @pytest.mark.long
 @needs_compiled_kernels
-def test_right_after_the_compilation_bits_are_those_of_later(tmp_path: Path) -> None:
+def test_right_after_the_compilation_bits_are_those_of_later(tmp_path):
     """Parts of the kernel in memory took the places of its own, with other last bits."""
     first, later = (
         printed_by("-c", HISTORIES, RPS_CACHE_DIR=str(tmp_path)) for _ in range(2)
@@ -268,10 +259,8 @@ def test_right_after_the_compilation_bits_are_those_of_later(tmp_path: Path) -> 
 
 
 @needs_compiled_kernels
-def test_a_full_disk_keeps_nothing_and_stops_nothing(
-    fresh_folder: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    def full(*_: object) -> None:
+def test_a_full_disk_keeps_nothing_and_stops_nothing(fresh_folder, tmp_path):
+    def full(*_):
         raise OSError(errno.ENOSPC, "No space left on device")
 
     fresh_folder.setattr(os, "fdopen", full)
@@ -283,8 +272,8 @@ def test_a_full_disk_keeps_nothing_and_stops_nothing(
 
 
 @pytest.mark.posix
-def test_an_interruption_does_not_wait_for_a_compilation() -> None:
-    def interrupt(number: int, frame: object) -> None:
+def test_an_interruption_does_not_wait_for_a_compilation():
+    def interrupt(number, frame):
         raise KeyboardInterrupt
 
     before = signal.signal(signal.SIGALRM, interrupt)
@@ -299,14 +288,14 @@ def test_an_interruption_does_not_wait_for_a_compilation() -> None:
         ended.set()
 
 
-def test_what_fails_in_the_background_is_raised() -> None:
+def test_what_fails_in_the_background_is_raised():
     with pytest.raises(ZeroDivisionError):
         in_background(divmod, 1, 0)
 
 
 @needs_compiled_kernels
-def test_a_kernel_without_sources_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    def unreadable(*_: object) -> str:
+def test_a_kernel_without_sources_is_told(monkeypatch):
+    def unreadable(*_):
         raise OSError("could not get source code")
 
     functions.tree_of_module.cache_clear()
@@ -317,17 +306,17 @@ def test_a_kernel_without_sources_is_told(monkeypatch: pytest.MonkeyPatch) -> No
 
 
 @pytest.mark.posix
-def test_an_interruption_waits_for_the_end_of_the_kernel() -> None:
+def test_an_interruption_waits_for_the_end_of_the_kernel():
     state = records((Field("stop", "", "-", "asked for"),))
     ended = []
 
-    def slow_to_hear() -> None:
+    def slow_to_hear():
         while state.view(np.ndarray)["stop"][0] == 0:
             time.sleep(0.01)
         time.sleep(0.3)  # a machine with other work
         ended.append(True)
 
-    def interrupt(number: int, frame: object) -> None:
+    def interrupt(number, frame):
         raise KeyboardInterrupt
 
     before = signal.signal(signal.SIGALRM, interrupt)

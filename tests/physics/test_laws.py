@@ -1,9 +1,6 @@
 """Laws by themselves: slopes of geometry and inertia, what friction holds, a storey's loop."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -15,7 +12,6 @@ from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.contact import Contact
 from rpscli.model.devices import FrictionDamper, RollingResistance
 from rpscli.model.impact import ImpactLaw
-from rpscli.model.podium import Device, PodiumStructure
 from rpscli.physics.bed import first_phase, load_bed
 from rpscli.physics.beginning import load_modes, load_system
 from rpscli.physics.devices.acting import load_devices
@@ -23,14 +19,14 @@ from rpscli.physics.energy import slip_energy
 from rpscli.physics.friction import grip_of
 from rpscli.physics.lane import place_of
 from rpscli.physics.records import records
-from rpscli.physics.state import STATE, Record
+from rpscli.physics.state import STATE
 from rpscli.physics.storeys import base_slip, keep_slips, turn_storey
 from rpscli.physics.upright import enter_phase, set_polar
 
 F = 4e5  # N
-ARCS: dict[str, Any] = {"tan_wedge": 0.3, "rho": 0.5}
+ARCS = {"tan_wedge": 0.3, "rho": 0.5}
 PLANE, EDGES = (Contact(kind, period_ratio=1.2) for kind in ("plane", "edges"))
-ENDS: dict[str, dict[str, Any]] = {
+ENDS = {
     "rigid": {"rho": 0.0},
     "rigid arcs": ARCS,
     "plane": {"contact": PLANE},
@@ -40,14 +36,14 @@ ENDS: dict[str, dict[str, Any]] = {
     "spherical": {"tan_alpha": 0.0, "tan_wedge": 0.3, "rho": 0.8},
 }
 DAMPER, ROLLING = FrictionDamper(5e4), RollingResistance(0.004)
-FRICTION: dict[str, tuple[Device, ...]] = {
+FRICTION = {
     "friction": (DAMPER,),
     "rolling": (ROLLING,),
     "friction and rolling": (DAMPER, ROLLING),
 }
 
 
-def lane_of(structure: PodiumStructure) -> Record:
+def lane_of(structure):
     """A lane of the kernel in the phase in which a tilt to any side grows, at none."""
     state = records(STATE, 1, 2, 1)[0]
     system = stacked_systems([(structure, TimeHistorySettings())], pairs=True)[0]
@@ -61,7 +57,7 @@ def lane_of(structure: PodiumStructure) -> Record:
 @pytest.mark.evidence("both components", "exact")
 @pytest.mark.parametrize("end", ENDS)
 @pytest.mark.parametrize("part", [0.1, 0.5, 0.9])
-def test_slopes_are_what_differences_tend_to(end: str, part: float) -> None:
+def test_slopes_are_what_differences_tend_to(end, part):
     """Central differences of order 4 over parts of a thousandth leave some 1e-11."""
     state = lane_of(frame(3, 3.0, **ENDS[end]))
     low = max(state.x_low[0], 0.0)
@@ -84,7 +80,7 @@ def test_slopes_are_what_differences_tend_to(end: str, part: float) -> None:
 
 @pytest.mark.evidence("devices", "exact")
 @pytest.mark.parametrize("kind", ["friction", "rolling", "friction and rolling"])
-def test_what_is_held_is_held_against_every_direction(kind: str) -> None:
+def test_what_is_held_is_held_against_every_direction(kind):
     """Q.d <= P |W d| + M for 360 vectors d, on either side of the margin's zero."""
     left = lane_of(replace(frame(3, 3.0, **ENDS["spherical"]), devices=FRICTION[kind]))
     set_polar(left, 0, 0.12, 0.6, 0.8, 0.0, 0.0)
@@ -111,7 +107,7 @@ def test_what_is_held_is_held_against_every_direction(kind: str) -> None:
 
 @pytest.mark.evidence("storeys that yield", "exact")
 @pytest.mark.parametrize("hardening", [0.0, 0.05, 0.4])
-def test_a_spring_beside_one_that_slips(hardening: float) -> None:
+def test_a_spring_beside_one_that_slips(hardening):
     """h k d and (1 - h) times an elastic-perfectly plastic spring; work is stored or yielded."""
     h, above = (
         hardening,
@@ -124,7 +120,7 @@ def test_a_spring_beside_one_that_slips(hardening: float) -> None:
     k, shear_of = float(above.stiffnesses[0]), float(systems[0].storey_shear_of[0, 0])
     limit, work, reached, lies = F / k, 0.0, 0.0, 0.0
 
-    def put(drift: float) -> float:
+    def put(drift):
         """Move there; the shear, and the work on the way added."""
         nonlocal work, reached
         before = k * reached - base_slip(s, 0, 0, k * reached)

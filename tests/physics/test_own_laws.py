@@ -1,10 +1,7 @@
 """Laws of other packages: against those of ours that say the same, in lanes, and guarded."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -12,7 +9,6 @@ from paper_structures import FLAT, needs_compiled_kernels, podium, printed_by, w
 from two_components import frame, pair, two_pulses
 
 from rpscli.analyses.demand import Request, demands
-from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.case.schema.fields import Quantity
@@ -21,7 +17,6 @@ from rpscli.model.contact import Contact
 from rpscli.model.devices import FrictionDamper, OwnDamper, ViscousDamper
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.own import DamperLaw, RestitutionLaw
-from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import MotionComponents
 
 DT = 0.02
@@ -84,18 +79,14 @@ OPENS, GAP = 0.05, 0.0235
 GIVEN = RestitutionLaw({"e": PLAIN}, given)
 
 
-def with_own(
-    structure: PodiumStructure, law: DamperLaw, *values: float
-) -> PodiumStructure:
+def with_own(structure, law, *values):
     others = tuple(
         each for each in structure.devices if not isinstance(each, ViscousDamper)
     )
     return replace(structure, devices=(OwnDamper("own", law, values), *others))
 
 
-def history(
-    structure: PodiumStructure, motion: MotionComponents = ONE, accuracy: float = 1.0
-) -> TimeHistoryResult:
+def history(structure, motion=ONE, accuracy=1.0):
     settings = replace(SETTINGS, accuracy=accuracy)
     return time_history(structure, motion, settings, with_fixed_base=False)
 
@@ -141,7 +132,7 @@ of_cases = pytest.mark.parametrize("name", CASES)
 
 @of_cases
 @needs_compiled_kernels
-def test_a_linear_law_is_the_viscous_damper(name: str) -> None:
+def test_a_linear_law_is_the_viscous_damper(name):
     structure, motion = CASES[name]
     ours, own = (
         history(structure, motion),
@@ -160,7 +151,7 @@ def test_a_linear_law_is_the_viscous_damper(name: str) -> None:
     [("flat ends and friction", C), ("curved ends", C), ("both components", 10.0 * C)],
 )
 @needs_compiled_kernels
-def test_steps_end_where_a_law_has_a_kink(name: str, c: float) -> None:
+def test_steps_end_where_a_law_has_a_kink(name, c):
     structure, motion = CASES[name]
     watched, missed = (
         with_own(structure, law, c, OPENS) for law in (RELIEVED, UNWATCHED)
@@ -179,9 +170,7 @@ def test_steps_end_where_a_law_has_a_kink(name: str, c: float) -> None:
     assert abs(usual.energy.residual) < 1e-7 * usual.energy.input
 
 
-def numbers(
-    structure: PodiumStructure, motion: MotionComponents, count: int
-) -> list[Any]:
+def numbers(structure, motion, count):
     scales = np.linspace(0.8, 1.4, count)
     requests = [Request(structure, motion, SETTINGS, float(scale)) for scale in scales]
     return [each.history for each in demands(requests)]
@@ -189,7 +178,7 @@ def numbers(
 
 @pytest.mark.parametrize("name", ["flat ends and friction", "both on curved ends"])
 @needs_compiled_kernels
-def test_the_same_bits_alone_and_in_lanes(name: str) -> None:
+def test_the_same_bits_alone_and_in_lanes(name):
     structure, motion = CASES[name]
     law = ImpactLaw("softer", own=RestitutionLaw({}, softer), contact_time=2e-3)
     own = replace(with_own(structure, RELIEVED, C, OPENS), impact_law=law)
@@ -203,7 +192,7 @@ def test_the_same_bits_alone_and_in_lanes(name: str) -> None:
 
 @of_cases
 @needs_compiled_kernels
-def test_a_law_that_gives_one_restitution_changes_no_bit(name: str) -> None:
+def test_a_law_that_gives_one_restitution_changes_no_bit(name):
     structure, motion = CASES[name]
     ours, e = structure.impact_law, structure.restitution
     law = ImpactLaw("given", own=GIVEN, constants=(e,), contact_time=ours.contact_time)
@@ -216,7 +205,7 @@ def test_a_law_that_gives_one_restitution_changes_no_bit(name: str) -> None:
 
 
 @needs_compiled_kernels
-def test_an_impact_loses_what_its_rate_asks_for() -> None:
+def test_an_impact_loses_what_its_rate_asks_for():
     structure, _ = CASES["flat ends and friction"]
     law = ImpactLaw("softer", own=RestitutionLaw({}, softer), loss=0.8)
     own = history(replace(structure, impact_law=law))
@@ -255,7 +244,7 @@ def no_number(
 @pytest.mark.parametrize("name", ["flat ends and friction", "both components"])
 @pytest.mark.parametrize("law", [no_force, raises, too_large, no_number])
 @needs_compiled_kernels
-def test_what_a_law_may_not_give_ends_the_history(name: str, law: Any) -> None:
+def test_what_a_law_may_not_give_ends_the_history(name, law):
     structure, motion = CASES[name]
     if law in (no_force, raises):
         said = "no longer finite"
@@ -279,7 +268,7 @@ def unknown_to_numba(path: float, speed: float, c: float) -> float:
 
 
 @needs_compiled_kernels
-def test_what_cannot_be_compiled_is_named() -> None:
+def test_what_cannot_be_compiled_is_named():
     own = with_own(SMALL, DamperLaw(ONE_CONSTANT, unknown_to_numba, most, most), C)
     with pytest.raises(
         PluginError, match=r"test_own_laws\.unknown_to_numba cannot be compiled"
@@ -287,7 +276,7 @@ def test_what_cannot_be_compiled_is_named() -> None:
         history(own)
 
 
-def test_what_is_no_law_is_refused() -> None:
+def test_what_is_no_law_is_refused():
     spring = DamperLaw({"k": PLAIN}, lambda path, _, k: k * path, most, most)
     with pytest.raises(PluginError, match="its force at rest, at a displacement of"):
         OwnDamper("spring", spring, (1e5,))
@@ -301,7 +290,7 @@ def test_what_is_no_law_is_refused() -> None:
             ImpactLaw(kind, own=own)
 
 
-def test_a_law_answers_for_modes_and_steps() -> None:
+def test_a_law_answers_for_modes_and_steps():
     own = OwnDamper("own", RELIEVED, (C, 0.1))
     structure = replace(SMALL, devices=(own,))
     assert own.bounds(structure) == VISCOUS.bounds(structure) == (0.0, C)
@@ -310,7 +299,7 @@ def test_a_law_answers_for_modes_and_steps() -> None:
 
 
 @needs_compiled_kernels
-def test_machine_code_from_the_cache_calls_laws_of_this_process() -> None:
+def test_machine_code_from_the_cache_calls_laws_of_this_process():
     """Addresses differ from process to process; kernels on disk know none of them."""
     script = (
         "import ctypes; from physics import test_own_laws as t\n"

@@ -1,7 +1,5 @@
 """Columns without a flat part: they roll through the upright position, without impact."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from itertools import product
@@ -33,15 +31,13 @@ from rpscli.model.devices import (
     ViscousDamper,
 )
 from rpscli.model.impact import ImpactLaw
-from rpscli.model.podium import Device, PodiumStructure
+from rpscli.model.podium import PodiumStructure
 from rpscli.report.timehistory import outcome_text
 
 H, RADIUS, COLUMNS, BEAM, G = 1.5, 2.0, 2e4, 2e5, 9.80665
 
 
-def on_spheres(
-    storeys: int = 0, *devices: Device, flat: float = 0.0, law: ImpactLaw | None = None
-) -> PodiumStructure:
+def on_spheres(storeys=0, *devices, flat=0.0, law=None):
     """Four columns 3 m high with ends of 2 m radius, 0.9 m wide."""
     bearing = Bearing(math.hypot(H, H * flat), flat, 0.3, RADIUS / (2.0 * H), 4.0 / 3.0)
     above = building(storeys) if storeys else None
@@ -73,9 +69,7 @@ def on_spheres(
         "no gap",
     ],
 )
-def test_motion_is_that_of_the_second_integrator(
-    structure: PodiumStructure, scale: float, up: bool
-) -> None:
+def test_motion_is_that_of_the_second_integrator(structure, scale, up):
     """Released from a small tilt: from rest upright it lifts without a force to overcome."""
     record, rising = waves(4.0, 0.02, 5.0 * scale, 3), waves(4.0, 0.02, 2.0, 4)
     settings = TimeHistorySettings(free_vibration=0.0, initial_rotation=1e-3)
@@ -110,7 +104,7 @@ def test_motion_is_that_of_the_second_integrator(
 
 @pytest.mark.evidence("spherical ends", "exact")
 @needs_compiled_kernels
-def test_small_swings_have_the_period_of_height_and_radius() -> None:
+def test_small_swings_have_the_period_of_height_and_radius():
     """With h = 2H, a frame on massless columns is a pendulum of the length h^2/(2 r - h)."""
     h, frame = 2.0 * H, on_spheres()
     stiffness = (0.5 * COLUMNS + BEAM) * G * (2.0 * RADIUS - h) / h**2
@@ -127,9 +121,7 @@ def test_small_swings_have_the_period_of_height_and_radius() -> None:
 @pytest.mark.evidence("spherical ends", "exact")
 @needs_compiled_kernels
 @pytest.mark.parametrize("holds", [FrictionDamper, RollingResistance])
-def test_friction_takes_the_same_from_each_swing_and_then_holds(
-    holds: type[Device],
-) -> None:
+def test_friction_takes_the_same_from_each_swing_and_then_holds(holds):
     """Coulomb: each half swing is shorter by 2 F/K; below F/K the storey stays where it is."""
     frame = on_spheres()
     K = frame.weight * (2.0 * RADIUS - 2.0 * H) / (2.0 * H) ** 2
@@ -160,7 +152,7 @@ def test_friction_takes_the_same_from_each_swing_and_then_holds(
 
 
 @needs_compiled_kernels
-def test_auto_follows_two_periods_and_a_still_ground_moves_nothing() -> None:
+def test_auto_follows_two_periods_and_a_still_ground_moves_nothing():
     structure, motion = on_spheres(1), waves(4.0, 0.02, 5.0, 3)
     result = time_history(structure, motion, with_fixed_base=False)
     followed = motion.duration + 2.0 * (structure.rolling_period or 0.0)
@@ -170,7 +162,7 @@ def test_auto_follows_two_periods_and_a_still_ground_moves_nothing() -> None:
 
 
 @pytest.mark.evidence("spherical ends", "exact")
-def test_restoring_force_and_where_it_ends() -> None:
+def test_restoring_force_and_where_it_ends():
     """F du_b = W dv_b along the motion of the rotated points; no force and no limit at 0."""
     structure = on_spheres()
     storey = StoreyLagrangian(oracle_system(structure))
@@ -191,7 +183,7 @@ def test_restoring_force_and_where_it_ends() -> None:
     assert structure.initial_stiffness == pytest.approx(stiffness, rel=1e-14)
 
 
-def test_what_does_not_stand_or_strike_is_refused() -> None:
+def test_what_does_not_stand_or_strike_is_refused():
     with pytest.raises(ValueError, match=r"must be > 0\.5"):
         Bearing(H, 0.0, 0.3, 0.5)
     with pytest.raises(ValueError, match="wedge_slenderness = 0"):
@@ -204,7 +196,7 @@ def test_what_does_not_stand_or_strike_is_refused() -> None:
     assert rigid.restitution == flexible.restitution == 1.0
 
 
-def test_the_outcome_speaks_of_rolling_where_nothing_uplifts() -> None:
+def test_the_outcome_speaks_of_rolling_where_nothing_uplifts():
     result = time_history(on_spheres(1), waves(0.3, 0.02, 4.0, seed=3))
     assert outcome_text(result).startswith("survived: rolls and comes back")
     flat = time_history(on_spheres(1, flat=0.02), waves(3.0, 0.02, 4.0, seed=3))

@@ -1,7 +1,5 @@
 """The exact step of who stands: against the matrix exponential in fifty digits."""
 
-from __future__ import annotations
-
 import itertools
 from decimal import Decimal, getcontext
 
@@ -14,7 +12,7 @@ RATIOS = (0.0, 0.05, 0.999999, 1.0, 1.000001, 3.0, 40.0)
 STEPS = (0.0, 1e-7, 1e-4, 2e-3, 0.02)
 
 
-def exact(omega2: float, c: float, h: float) -> list[Decimal]:
+def exact(omega2, c, h):
     """S, S', I and J by Taylor series over halved steps, doubled again: fifty digits."""
     getcontext().prec = 60
     w2, damping = Decimal(omega2), Decimal(c)
@@ -24,7 +22,7 @@ def exact(omega2: float, c: float, h: float) -> list[Decimal]:
         part /= 2
         halvings += 1
 
-    def rates(y: list[Decimal]) -> list[Decimal]:
+    def rates(y):
         # y = q, q', its integral, that of it
         return [y[1], -w2 * y[0] - damping * y[1], y[0], y[2]]
 
@@ -49,7 +47,7 @@ def exact(omega2: float, c: float, h: float) -> list[Decimal]:
 
 
 @pytest.mark.parametrize("omega", FREQUENCIES)
-def test_responses_of_an_oscillator(omega: float) -> None:
+def test_responses_of_an_oscillator(omega):
     """Relative errors: closed forms lose what differences cost, at most three digits."""
     for ratio, h in itertools.product(RATIOS, STEPS):
         c = 2.0 * ratio * omega
@@ -68,7 +66,7 @@ def test_responses_of_an_oscillator(omega: float) -> None:
             )
 
 
-def test_the_rule_of_four_points_is_that_of_order_eight() -> None:
+def test_the_rule_of_four_points_is_that_of_order_eight():
     for power in range(8):
         total = sum(w * x**power for w, x in zip(WEIGHTS, POINTS, strict=True))
         assert total == pytest.approx(1.0 / (power + 1), rel=1e-15)

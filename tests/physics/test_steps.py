@@ -1,16 +1,12 @@
 """Steps: the orders that are observed, where they are halved, and how many it takes."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 import pytest
 from paper_structures import (
     FLAT,
-    Array,
     building,
     let_go,
     needs_compiled_kernels,
@@ -30,12 +26,11 @@ from rpscli.model.superstructure import RayleighDamping
 from rpscli.physics.tableau import END, ERROR, SQUARED, USED
 from rpscli.physics.tableau import STAGES as A
 from rpscli.physics.tableau import TIMES as C
-from rpscli.records.ground_motion import GroundMotion
 
 SIXTH, FIFTH = A[END], A[END] - ERROR
 
 
-def missed(b: Array) -> Iterator[float]:
+def missed(b):
     """What weights miss of the conditions of orders 1 to 5 (Butcher's trees)."""
     Ac, Ac2 = A @ C, A @ C**2
     yield float(b.sum() - 1.0)
@@ -49,17 +44,17 @@ def missed(b: Array) -> Iterator[float]:
 
 
 @pytest.mark.parametrize("b", [SIXTH, FIFTH], ids=["6", "5"])
-def test_conditions_up_to_order_five(b: Array) -> None:
+def test_conditions_up_to_order_five(b):
     # weights of up to 176 multiply rounding
     assert max(map(abs, missed(b))) < 1e-10
 
 
-def test_one_rule_is_of_order_six_and_the_other_is_not() -> None:
+def test_one_rule_is_of_order_six_and_the_other_is_not():
     assert pytest.approx(1.0 / 6.0, abs=1e-10) == SIXTH @ C**5
     assert abs(FIFTH @ C**5 - 1.0 / 6.0) > 1e-4
 
 
-def test_positions_follow_by_the_squared_tableau() -> None:
+def test_positions_follow_by_the_squared_tableau():
     assert np.array_equal(SQUARED, A @ A)
     assert pytest.approx(0.5, abs=1e-10) == SIXTH @ C
     assert not np.any(np.where(USED, 0.0, A))
@@ -76,7 +71,7 @@ LEAST_PARABOLA = 4.5
 
 
 @pytest.fixture
-def even_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+def even_steps(monkeypatch):
     """No error shortens them."""
     monkeypatch.setattr(systems, "STEP_ERROR", math.inf)
     monkeypatch.setattr(systems, "_system", systems._system.__wrapped__)
@@ -90,16 +85,16 @@ class Orders(NamedTuple):
     reference: TimeHistoryResult
 
 
-def observed(structure: PodiumStructure, record: GroundMotion) -> Orders:
+def observed(structure, record):
     """Released from 0.1 rad under the record, which ends the history."""
 
-    def run(accuracy: float) -> TimeHistoryResult:
+    def run(accuracy):
         settings = TimeHistorySettings(
             free_vibration=0.0, accuracy=accuracy, initial_rotation=0.1
         )
         return time_history(structure, record, settings)
 
-    def last(result: TimeHistoryResult) -> Array:
+    def last(result):
         t = result.trace
         ends = t.rotation[-1:], t.rotation_rate[-1:], t.drifts[-1], t.storey_shears[-1]
         return np.concatenate(ends)
@@ -142,9 +137,7 @@ CURVED = [(n, rho) for n in (1, 3) for rho in (FLAT, 0.25, 0.5, 1.5)]
         *((n, rho, True) for n, rho in [(0, FLAT), (0, 0.25), (0, 1.5), *CURVED]),
     ],
 )
-def test_steps_are_of_order_six_and_events_cost_none(
-    storeys: int, rho: float, events: bool
-) -> None:
+def test_steps_are_of_order_six_and_events_cost_none(storeys, rho, events):
     """Impacts reset the state, and D jumps at beta: both only if met exactly."""
     # without springs the motion is slow: longer intervals, or one step would do for all
     dt = 0.02 if storeys else 0.2
@@ -173,9 +166,7 @@ HEAVY = PodiumStructure(
 """Floors of hundreds of columns: near theta_cr, where they rise no more, A has a valley."""
 
 
-def drift(
-    structure: PodiumStructure, rotation: float, accuracy: float
-) -> tuple[float, float]:
+def drift(structure, rotation, accuracy):
     """Largest change of the energy that should stay, over itself; steps over the plain number."""
     start = rotation * structure.bearing.critical_rotation
     result = let_go(structure, start, 2.0, 0.05, accuracy=accuracy)
@@ -186,9 +177,7 @@ def drift(
 
 @needs_compiled_kernels
 @pytest.mark.parametrize(("structure", "rotation"), [(SHORT, 0.55), (HEAVY, 0.95)])
-def test_steps_are_halved_where_the_tilt_is_fast(
-    structure: PodiumStructure, rotation: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_steps_are_halved_where_the_tilt_is_fast(structure, rotation, monkeypatch):
     # undamped buildings would have short steps anyway
     monkeypatch.setattr(systems, "MOST_LOST", math.inf)
     monkeypatch.setattr(
@@ -214,7 +203,7 @@ it, and halves of steps in which the tilt changes fast."""
 @pytest.mark.parametrize(
     ("storeys", "rho"), [(0, FLAT), (0, 1.5), (3, 0.5), (6, FLAT), (9, 0.26), (9, 1.5)]
 )
-def test_an_event_costs_few_steps(storeys: int, rho: float) -> None:
+def test_an_event_costs_few_steps(storeys, rho):
     structure = podium(storeys, 0.10, rho)
     for seed in range(3):
         record = waves(12.0, 0.01, 2.5 * structure.uplift_acceleration, seed)

@@ -1,7 +1,5 @@
 """Which loops over lanes are vector instructions: all but those that look at a lane alone."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 
@@ -33,13 +31,13 @@ LANE_BY_LANE = {
 """Loops of which a lane rarely has something to do, by their functions."""
 
 
-def loops_over_lanes(text: str) -> set[str]:
+def loops_over_lanes(text):
     """Names of all loops over lanes of a program: function and line."""
     tests = re.findall(rf"icmp slt i64 %(\w+)\.(\d+)\.loop\.\d+\.i, {LANES}\n", text)
     return {f"{function}:{line}" for function, line in tests}
 
 
-def left_as_they_were(text: str) -> set[str]:
+def left_as_they_were(text):
     """Names of the loops that LLVM kept and did not make vector instructions of."""
     module = str(optimised(text))
     nodes = dict(re.findall(r"^!(\d+) = (?:distinct )?!\{(.*)\}$", module, re.MULTILINE))
@@ -54,7 +52,7 @@ def left_as_they_were(text: str) -> set[str]:
 
 @needs_compiled_kernels
 @pytest.mark.parametrize("ways", [1, 2])
-def test_loops_over_lanes_become_vector_instructions(ways: int) -> None:
+def test_loops_over_lanes_become_vector_instructions(ways):
     text = program_text(ways, LANES)
     loops = loops_over_lanes(text)
     assert len(loops) > 35

@@ -1,12 +1,8 @@
 """The kernels as plain Python do what they do as machine code, to the last bit."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 from dataclasses import replace
-from pathlib import Path
-from typing import Any, TypeAlias
 
 import numpy as np
 import pytest
@@ -25,7 +21,6 @@ from rpscli.model.devices import (
 )
 from rpscli.model.impact import ImpactLaw
 from rpscli.physics.integrate import integrate
-from rpscli.physics.run import Run
 from rpscli.physics.state import (
     IMPACT,
     LANES,
@@ -38,8 +33,6 @@ from rpscli.physics.state import (
     UPLIFT,
 )
 from rpscli.records.ground_motion import MotionComponents
-
-Histories: TypeAlias = dict[str, list[dict[str, Any]]]
 
 DT = 0.02
 ONE, TWO = waves(0.7, DT, 4.0, seed=5), waves(0.7, DT, 3.0, seed=8)
@@ -62,7 +55,7 @@ REQUESTS = [Request(0, 2), Request(0, 1, scale=0.35), Request(1, 3, scale=0.3)]
 ROWS = 256
 
 
-def integrated(requests: list[Request], lanes: int, rows: int = 0) -> Run:
+def integrated(requests, lanes, rows=0):
     systems = stacked_systems([(structure, SETTINGS) for structure in STRUCTURES])
     run = run_of(systems, MOTIONS, requests, rows=rows, events=rows)
     # lanes without a history make empty steps, of zeros
@@ -71,7 +64,7 @@ def integrated(requests: list[Request], lanes: int, rows: int = 0) -> Run:
     return run
 
 
-def demands_of_all(run: Run) -> list[dict[str, Any]]:
+def demands_of_all(run):
     """What every history leaves behind."""
     return [
         {name: np.ravel(result[name]).tolist() for name in result.dtype.names}
@@ -79,7 +72,7 @@ def demands_of_all(run: Run) -> list[dict[str, Any]]:
     ]
 
 
-def sampled_history() -> dict[str, Any]:
+def sampled_history():
     """One with devices, with its samples and events."""
     run = integrated([Request(2, 0)], lanes=1, rows=ROWS)
     kept = int(run.results.intervals[0]) + 1
@@ -95,7 +88,7 @@ def sampled_history() -> dict[str, Any]:
     return found | {"floors": run.output.floors[:kept].ravel().tolist()}
 
 
-def everything(lanes: int = 2) -> Histories:
+def everything(lanes=2):
     """Histories side by side, and the sampled one.
 
     Python takes its time for each lane: with few of them, one takes several histories.
@@ -104,7 +97,7 @@ def everything(lanes: int = 2) -> Histories:
     return {"several": several, "sampled": [sampled_history()]}
 
 
-def digest_of_a_pair() -> str:
+def digest_of_a_pair():
     """Of a storey that uplifts under two pulses, and passes near upright; samples included."""
     x, y = two_pulses()[:, 80:106]
     x[0] = y[0] = 0.0
@@ -115,7 +108,7 @@ def digest_of_a_pair() -> str:
     return hashlib.sha256(b"".join(of.tobytes() for of in kept)).hexdigest()
 
 
-def as_python(function: str, **environment: str) -> Any:
+def as_python(function, **environment):
     """What a function of this module gives where nothing is compiled."""
     script = f"import json; from physics import {__name__.rpartition('.')[2]} as here\n"
     script += f"print(json.dumps(here.{function}()))"
@@ -124,14 +117,13 @@ def as_python(function: str, **environment: str) -> Any:
 
 
 @pytest.fixture(scope="module")
-def interpreted() -> Histories:
-    found: Histories = as_python("everything")
-    return found
+def interpreted():
+    return as_python("everything")
 
 
 @needs_compiled_kernels
 @pytest.mark.parametrize("kind", ["several", "sampled"])
-def test_python_and_machine_code_agree(interpreted: Histories, kind: str) -> None:
+def test_python_and_machine_code_agree(interpreted, kind):
     """Machine code in as many lanes as it has, Python in few."""
     compiled = everything(LANES)[kind]
     assert len(interpreted[kind]) == len(compiled)
@@ -141,7 +133,7 @@ def test_python_and_machine_code_agree(interpreted: Histories, kind: str) -> Non
             np.testing.assert_array_equal(slow[name], values, err_msg=name)
 
 
-def test_the_histories_compared_are_not_trivial(interpreted: Histories) -> None:
+def test_the_histories_compared_are_not_trivial(interpreted):
     events = np.array([found["events"] for found in interpreted["several"]])
     assert events[:, UPLIFT].sum() >= 4
     assert events[:, IMPACT].sum() >= 8
@@ -151,7 +143,7 @@ def test_the_histories_compared_are_not_trivial(interpreted: Histories) -> None:
 
 
 @needs_compiled_kernels
-def test_python_and_machine_code_agree_under_both_components(tmp_path: Path) -> None:
+def test_python_and_machine_code_agree_under_both_components(tmp_path):
     assert (
         as_python("digest_of_a_pair", RPS_CACHE_DIR=str(tmp_path)) == digest_of_a_pair()
     )

@@ -1,10 +1,7 @@
 """What headers and titles state is used: units, steps, counts, quantities, events, directions."""
 
-from __future__ import annotations
-
 import math
 from itertools import product
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,14 +18,12 @@ from rpscli.report.motions import two_column_text
 FOUR = [0.1, -0.2, 0.3, 0.05]
 
 
-def load(
-    folder: Path, text: str, options: str = "", name: str = "rec.txt"
-) -> GroundMotion:
+def load(folder, text, options="", name="rec.txt"):
     (folder / name).write_text(text, encoding="utf-8")
     return load_record(name + options, folder=folder)
 
 
-def table(form: str = "{:.2f} {}") -> str:
+def table(form="{:.2f} {}"):
     return "\n".join(form.format(i * 0.02, value) for i, value in enumerate(FOUR))
 
 
@@ -54,7 +49,7 @@ FORMS = ["{:.2f} {}", "{:.4e}\t{}", "{:.3f}, {}", "  {:.2f} {}"]
 @pytest.mark.parametrize(
     ("header", "form"), [*product(HEADERS, FORMS), *product(WITH_DT, ["{1}"])]
 )
-def test_one_or_two_columns_with_a_header(tmp_path: Path, header: str, form: str) -> None:
+def test_one_or_two_columns_with_a_header(tmp_path, header, form):
     made = load(tmp_path, f"{header}{table(form)}\n# the end\n")
     np.testing.assert_allclose(
         made.acceleration, np.array(FOUR) * STANDARD_GRAVITY, rtol=1e-15
@@ -64,7 +59,7 @@ def test_one_or_two_columns_with_a_header(tmp_path: Path, header: str, form: str
     assert "values in g" in made.description
 
 
-def test_units_that_are_given(tmp_path: Path) -> None:
+def test_units_that_are_given(tmp_path):
     assert load(tmp_path, table(), "?units=g").pga == pytest.approx(
         0.3 * STANDARD_GRAVITY
     )
@@ -72,7 +67,7 @@ def test_units_that_are_given(tmp_path: Path) -> None:
     assert load(tmp_path, table(), "?units=cm/s^2").pga == pytest.approx(0.003)
 
 
-def test_one_column_with_options(tmp_path: Path) -> None:
+def test_one_column_with_options(tmp_path):
     text = table("{1}")
     assert load(tmp_path, text, "?dt=0.005&units=m/s2").dt == 0.005
     assert load(tmp_path, text, "?units=m/s2&dt=5 ms").dt == 0.005
@@ -89,9 +84,7 @@ def test_one_column_with_options(tmp_path: Path) -> None:
         "9\n.1\n.2",
     ],
 )
-def test_a_leading_count_or_step_is_not_an_acceleration(
-    tmp_path: Path, lines: str
-) -> None:
+def test_a_leading_count_or_step_is_not_an_acceleration(tmp_path, lines):
     with pytest.raises(RecordError, match="look like a header"):
         load(tmp_path, lines, "?dt=0.02&units=g")
 
@@ -108,9 +101,7 @@ def test_a_leading_count_or_step_is_not_an_acceleration(
         ("0.02\n.1\n.2\n.3", [0.02, 0.1, 0.2, 0.3], "equals dt"),
     ],
 )
-def test_doubted_values(
-    tmp_path: Path, text: str, values: list[float], warning: str
-) -> None:
+def test_doubted_values(tmp_path, text, values, warning):
     made = load(tmp_path, text, "?dt=0.02&units=m/s2")
     assert (made.acceleration.tolist(), made.dt) == (values, 0.02)
     assert warning in made.warnings[0]
@@ -120,9 +111,7 @@ def test_doubted_values(
     "step", [0.02, 0.005, 0.0039, 0.0024, 1.0 / 256.0, 0.0125, 1.0 / 3.0]
 )
 @pytest.mark.parametrize("form", ["{:.4f}", "{:.6g}", "{!r}", "{:.7e}", "{:g}"])
-def test_steps_survive_the_printing_of_times(
-    tmp_path: Path, step: float, form: str
-) -> None:
+def test_steps_survive_the_printing_of_times(tmp_path, step, form):
     count = 3000
     rows = [f"{form.format(step * i)} {0.1 * (i % 7)}" for i in range(count)]
     made = load(tmp_path, "\n".join(rows), "?units=m/s2")
@@ -133,7 +122,7 @@ def test_steps_survive_the_printing_of_times(
 
 
 @pytest.mark.parametrize("step", [0.02, 0.005, 0.0025, 0.01])
-def test_round_steps_come_out_exactly(step: float) -> None:
+def test_round_steps_come_out_exactly(step):
     times = np.cumsum(np.full(9000, step)) - step  # as a loop t = t + dt prints them
     assert uniform_step(times, 1e-12) == step
 
@@ -144,7 +133,7 @@ VALUES = 0.2 * np.sin(4.0 * np.pi * TIMES) * np.sin(np.pi * TIMES / TIMES[-1]) *
 PEAK = float(np.max(np.abs(VALUES)))
 
 
-def rows(*columns: np.ndarray, form: str = "{:.6f}", between: str = ",") -> str:
+def rows(*columns, form="{:.6f}", between=","):
     lines = (
         between.join(form.format(v) for v in row) for row in zip(*columns, strict=True)
     )
@@ -188,7 +177,7 @@ HEAD = "NUMBER OF DATA : 200\nSAMPLING INTERVAL (sec) : 0.005\nunits: g\n"
         (f"units: g\n{rows(TIMES, VALUES / 2, VALUES)}", "?channel=3"),
     ],
 )  # fmt: skip
-def test_units_steps_counts_and_columns(tmp_path: Path, text: str, options: str) -> None:
+def test_units_steps_counts_and_columns(tmp_path, text, options):
     made = load(tmp_path, text.removesuffix('"'), options)
     assert (made.npts, made.dt) == (COUNT, DT)
     np.testing.assert_allclose(made.acceleration, VALUES * STANDARD_GRAVITY, atol=1e-5)
@@ -304,18 +293,18 @@ def test_units_steps_counts_and_columns(tmp_path: Path, text: str, options: str)
         (f"units: g\n{rows(TIMES, VALUES, VALUES)}", "", "by its place, .channel=2"),
     ],
 )
-def test_refuses(tmp_path: Path, text: str, options: str, message: str) -> None:
+def test_refuses(tmp_path, text, options, message):
     with pytest.raises(RecordError, match=message):
         load(tmp_path, text, options)
 
 
-def test_an_offset_is_a_warning(tmp_path: Path) -> None:
+def test_an_offset_is_a_warning(tmp_path):
     (warning,) = load(tmp_path, f"units: g\ndt: 0.005\n{rows(VALUES + 1.0)}").warnings
     assert "of the peak: an offset of the instrument?" in warning
     assert load(tmp_path, f"units: g\ndt: 0.005\n{ALONE}").warnings == ()
 
 
-def test_a_peak_that_the_header_contradicts_is_a_warning(tmp_path: Path) -> None:
+def test_a_peak_that_the_header_contradicts_is_a_warning(tmp_path):
     for line in ("Peak acc (gal): {}", "Peak acceleration = {} gal at 2 s"):
         text = f"units: g\ndt: 0.005\n{line}\n{ALONE}"
         assert (
@@ -340,7 +329,7 @@ WRITTEN = {
 }
 
 
-def written(folder: Path, motion: GroundMotion, form: str) -> GroundMotion:
+def written(folder, motion, form):
     """The motion as it is read back from an AT2 file or a text of two columns."""
     text = at2_text(motion) if form == "at2" else two_column_text(motion)
     return load(folder, text, name="y.at2" if form == "at2" else "y.txt")
@@ -348,7 +337,7 @@ def written(folder: Path, motion: GroundMotion, form: str) -> GroundMotion:
 
 @pytest.mark.parametrize("kind", WRITTEN)
 @pytest.mark.parametrize("form", ["at2", "text"])
-def test_what_is_written_reads_back(tmp_path: Path, kind: str, form: str) -> None:
+def test_what_is_written_reads_back(tmp_path, kind, form):
     text, name = WRITTEN[kind]
     made = load(tmp_path, text, name=name) if text else load_record(name)
     again = written(tmp_path, made, form)
@@ -367,7 +356,7 @@ def test_what_is_written_reads_back(tmp_path: Path, kind: str, form: str) -> Non
      "velocity  time, units of mm/s2", "NPTS= 3, DT= 1"],
 )  # fmt: skip
 @pytest.mark.parametrize("form", ["at2", "text"])
-def test_a_title_states_nothing(tmp_path: Path, title: str, form: str) -> None:
+def test_a_title_states_nothing(tmp_path, title, form):
     motion = GroundMotion(VALUES * STANDARD_GRAVITY, DT, "x", "s", "SMC", title)
     again = written(tmp_path, motion, form)
     assert (again.npts, again.dt) == (COUNT, DT)

@@ -1,7 +1,4 @@
-from __future__ import annotations
-
 import math
-from typing import Any
 
 import numpy as np
 import pytest
@@ -25,14 +22,14 @@ from rpscli.records.measures import (
 SAMPLES = st.lists(st.floats(-10.0, 10.0), min_size=2, max_size=30)
 
 
-def motion(values: Any, dt: float = 0.5) -> GroundMotion:
+def motion(values, dt=0.5):
     return GroundMotion(
         np.asarray(values, dtype=float), dt, "name", "source.at2", "PEER AT2"
     )
 
 
 @pytest.mark.evidence("measures and spectra of records", "exact")
-def test_a_triangle_by_hand() -> None:
+def test_a_triangle_by_hand():
     # a = 0, 2, 0 m/s2 at 1 s: v = 0, 1, 2; d adds 2/6 and then 1 + 4/6.
     made = motion([0.0, 2.0, 0.0], 1.0)
     assert velocity(made.acceleration, 1.0).tolist() == [0.0, 1.0, 2.0]
@@ -51,7 +48,7 @@ def test_a_triangle_by_hand() -> None:
 
 
 @pytest.mark.evidence("measures and spectra of records", "exact")
-def test_one_sine_against_its_integrals() -> None:
+def test_one_sine_against_its_integrals():
     a, w, count = 3.0, 2.0 * math.pi, 4000
     t = np.arange(count + 1) / count
     made = motion(a * np.sin(w * t), 1.0 / count)
@@ -66,7 +63,7 @@ def test_one_sine_against_its_integrals() -> None:
 
 
 @pytest.mark.evidence("measures and spectra of records", "exact")
-def test_significant_durations_by_hand() -> None:
+def test_significant_durations_by_hand():
     # Flat for 10 s: the Husid curve is straight, so 70 % and 90 % of 10 s.
     measures = intensity_measures(motion([1.0] * 101, 0.1))
     assert measures.d5_75 == pytest.approx(7.0)
@@ -74,7 +71,7 @@ def test_significant_durations_by_hand() -> None:
 
 
 @pytest.mark.evidence("measures and spectra of records", "exact")
-def test_spectral_measures_of_a_sudden_load() -> None:
+def test_spectral_measures_of_a_sudden_load():
     """Its spectrum is flat: a (1 + e), e the decay over half a cycle, at every period."""
     a, damping = 3.0, 0.05
     peak = a * (1.0 + math.exp(-math.pi * damping / math.sqrt(1.0 - damping**2)))
@@ -87,7 +84,7 @@ def test_spectral_measures_of_a_sudden_load() -> None:
 
 
 @pytest.mark.evidence("measures and spectra of records", "exact")
-def test_filtered_incremental_velocity_of_three_long_pushes() -> None:
+def test_filtered_incremental_velocity_of_three_long_pushes():
     """Bell curves, too slow for the filter: each gains its integral over 0.7 T at its top."""
     period, dt, wide = 0.5, 0.005, 2.0
     bell = np.exp(-0.5 * (np.arange(-12.0, 12.0, dt) / wide) ** 2)
@@ -107,7 +104,7 @@ def test_filtered_incremental_velocity_of_three_long_pushes() -> None:
 
 @pytest.mark.evidence("measures and spectra of records", "exact")
 @pytest.mark.parametrize("frequency", [0.5, 1.3, 4.0])
-def test_filtered_incremental_velocity_of_a_sine(frequency: float) -> None:
+def test_filtered_incremental_velocity_of_a_sine(frequency):
     """Three times amplitude, squared gain of the filter, and integral over the window."""
     a, period, dt = 2.0, 0.6, 0.002
     corner, count = 0.85 / period, round(40.0 / dt)
@@ -128,9 +125,7 @@ def test_filtered_incremental_velocity_of_a_sine(frequency: float) -> None:
 @pytest.mark.evidence("measures and spectra of records", "exact")
 @settings(deadline=None)
 @given(SAMPLES, st.floats(0.001, 1.0))
-def test_integrals_are_those_of_the_straight_lines(
-    values: list[float], dt: float
-) -> None:
+def test_integrals_are_those_of_the_straight_lines(values, dt):
     a = np.array(values)
     fine = np.interp(
         np.linspace(0, a.size - 1, 1 + 8 * (a.size - 1)), np.arange(a.size), a
@@ -142,12 +137,12 @@ def test_integrals_are_those_of_the_straight_lines(
     np.testing.assert_allclose(fine_d, displacement(a, dt), atol=1e-12 * 10 * span**2)
 
 
-def test_a_motion_of_zeros_measures_nothing() -> None:
+def test_a_motion_of_zeros_measures_nothing():
     measures = intensity_measures(motion([0.0, 0.0, 0.0], 0.1))
     assert set(vars(measures).values()) == {0.0}
 
 
-def simulated(made: GroundMotion, period: float, damping: float) -> tuple[float, float]:
+def simulated(made, period, damping):
     """Peaks by scipy's simulation of the same oscillator, linear between samples."""
     w = 2.0 * math.pi / period
     quiet = math.ceil(period / made.dt) + 1
@@ -169,9 +164,7 @@ def simulated(made: GroundMotion, period: float, damping: float) -> tuple[float,
     st.floats(0.5, 20.0),
     st.floats(0.0, 0.9),
 )
-def test_against_another_simulation(
-    values: list[int], period: float, damping: float
-) -> None:
+def test_against_another_simulation(values, period, damping):
     # At least 50 samples a period: nothing is refined.
     made = motion([value / 1000 for value in values], 0.01)
     spectrum = response_spectrum(made, [period], damping)
@@ -188,7 +181,7 @@ def test_against_another_simulation(
 
 
 @pytest.mark.evidence("measures and spectra of records", "exact")
-def test_steady_resonance_by_formula() -> None:
+def test_steady_resonance_by_formula():
     # At resonance an undamped oscillator at rest answers a sin(wt) by a (wt cos(wt) - sin(wt))/2w2.
     w, a, cycles = 2.0 * math.pi, 1.5, 10
     t = np.arange(0, cycles * 2000 + 1) / 2000
@@ -201,7 +194,7 @@ def test_steady_resonance_by_formula() -> None:
 
 @pytest.mark.evidence("measures and spectra of records", "exact")
 @pytest.mark.parametrize("damping", [0.0, 0.05, 0.3])
-def test_sudden_constant_load_overshoots_as_in_textbooks(damping: float) -> None:
+def test_sudden_constant_load_overshoots_as_in_textbooks(damping):
     made = motion([2.0, 2.0], 3.0)
     overshoot = 1.0 + math.exp(-damping * math.pi / math.sqrt(1.0 - damping**2))
     sa = measured(made, "Sa", 4.0, damping)
@@ -209,7 +202,7 @@ def test_sudden_constant_load_overshoots_as_in_textbooks(damping: float) -> None
     assert sa == pytest.approx(2.0 * overshoot, rel=2e-3)
 
 
-def test_limits_of_short_and_long_periods() -> None:
+def test_limits_of_short_and_long_periods():
     made = load_record("synthetic:?pga=0.3g&seed=5&duration=10")
     spectrum = response_spectrum(made, [0.0, 0.004, 300.0])
     assert spectrum.pseudo_acceleration[0] == made.pga == spectrum.total_acceleration[0]
@@ -222,7 +215,7 @@ def test_limits_of_short_and_long_periods() -> None:
     )
 
 
-def test_linearity_and_definition() -> None:
+def test_linearity_and_definition():
     made = load_record("pulse:ricker?amplitude=0.3g&period=0.8&dt=0.004")
     periods = [0.1, 0.7, 2.0]
     one, twice = (
@@ -251,12 +244,12 @@ def test_linearity_and_definition() -> None:
         (1.0, 1.0, r"must be in \[0, 1\)"),
     ],
 )
-def test_refuses(period: float, damping: float, message: str) -> None:
+def test_refuses(period, damping, message):
     with pytest.raises(RecordError, match=message):
         response_spectrum(motion([0.0, 1.0], 0.1), [period], damping)
 
 
-def test_samples_are_a_read_only_contiguous_copy() -> None:
+def test_samples_are_a_read_only_contiguous_copy():
     values = np.arange(10.0)[::2]
     made = GroundMotion(values, 0.1, "n", "s", "f")
     values[0] = 99.0
@@ -266,7 +259,7 @@ def test_samples_are_a_read_only_contiguous_copy() -> None:
         made.acceleration[0] = 1.0
 
 
-def test_scaled_says_so_and_keeps_the_rest() -> None:
+def test_scaled_says_so_and_keeps_the_rest():
     made = motion([0.0, 1.0, -4.0])
     twice = made.scaled(-2.0)
     assert twice.acceleration.tolist() == [0.0, -2.0, 8.0]
@@ -276,7 +269,7 @@ def test_scaled_says_so_and_keeps_the_rest() -> None:
     assert (twice.name, twice.source, twice.dt) == (made.name, made.source, made.dt)
 
 
-def test_digest_depends_on_step_and_samples_only() -> None:
+def test_digest_depends_on_step_and_samples_only():
     made = motion([0.0, 1.0])
     same = GroundMotion(np.array([0.0, 1.0]), 0.5, "other", "elsewhere", "pulse")
     assert made.digest == same.digest
@@ -295,13 +288,13 @@ def test_digest_depends_on_step_and_samples_only() -> None:
         ([0.0, 1.0], np.inf, "must be positive and finite"),
     ],
 )
-def test_refuses_samples(values: list[Any], dt: float, message: str) -> None:
+def test_refuses_samples(values, dt, message):
     with pytest.raises(RecordError, match=message) as raised:
         motion(values, dt)
     assert "source.at2" in str(raised.value)
 
 
-def test_a_second_horizontal_component() -> None:
+def test_a_second_horizontal_component():
     x, y, up = motion([1.0, -2.0]), motion([5.0, 6.0, 7.0]), motion([1.0, 0.0])
     pair = MotionComponents(x, up, y=y)
     assert [*pair.named] == ["horizontal", "y", "vertical"]

@@ -1,16 +1,11 @@
-from __future__ import annotations
-
 import math
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
-from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.loading import load_record
 from rpscli.records.measures import displacement, intensity_measures, measured, velocity
 
@@ -30,7 +25,7 @@ WAVES = "pulse:mavroeidis_papageorgiou"
         ("-0.4g", -0.4 * 9.80665),
     ],
 )
-def test_amplitudes(amplitude: str, value: float) -> None:
+def test_amplitudes(amplitude, value):
     made = load_record(f"pulse:cosine?amplitude={amplitude}&period=1.2 s")
     assert made.pga == pytest.approx(abs(value), rel=1e-15)
     assert made.acceleration[0] == pytest.approx(value, rel=1e-15)
@@ -40,7 +35,7 @@ def test_amplitudes(amplitude: str, value: float) -> None:
     ("name", "periods", "wave"),
     [("sine", 1.0, np.sin), ("cosine", 1.0, np.cos), ("half_sine", 0.5, np.sin)],
 )
-def test_waves(name: str, periods: float, wave: Callable[[Any], Any]) -> None:
+def test_waves(name, periods, wave):
     made = load_record(f"pulse:{name}?amplitude=2&period=1.2")
     assert (made.npts, made.dt, made.format) == (
         1 + round(2000 * periods),
@@ -56,7 +51,7 @@ def test_waves(name: str, periods: float, wave: Callable[[Any], Any]) -> None:
     )
 
 
-def test_ricker() -> None:
+def test_ricker():
     made = load_record("pulse:ricker?amplitude=0.4g&period=1.2")
     x = math.pi * (made.time - made.time[np.argmax(made.acceleration)]) / T
     expected = made.pga * (1.0 - 2.0 * x**2) * np.exp(-(x**2))
@@ -67,7 +62,7 @@ def test_ricker() -> None:
     assert "period 1.2 s, peak 0.4 g" in made.description
 
 
-def test_ricker_antisymmetric() -> None:
+def test_ricker_antisymmetric():
     made = load_record("pulse:ricker_antisymmetric?amplitude=2&period=1.2")
     x = math.pi * (made.time - 0.5 * made.duration) / T
     expected = (
@@ -80,9 +75,7 @@ def test_ricker_antisymmetric() -> None:
 
 @pytest.mark.parametrize("cycles", [1.2, 2.0, 3.5])
 @pytest.mark.parametrize("phase", ["0", "90 deg", "0.7"])
-def test_mavroeidis_papageorgiou_integrates_to_its_velocity(
-    cycles: float, phase: str
-) -> None:
+def test_mavroeidis_papageorgiou_integrates_to_its_velocity(cycles, phase):
     source = f"{WAVES}?velocity_amplitude=0.5 m/s&period=1.2"
     made = load_record(f"{source}&cycles={cycles}&phase={phase}")
     nu = math.pi / 2 if "deg" in phase else float(phase)
@@ -94,7 +87,7 @@ def test_mavroeidis_papageorgiou_integrates_to_its_velocity(
     assert made.duration >= cycles * T - 1e-9
 
 
-def test_mavroeidis_papageorgiou_by_peak_acceleration() -> None:
+def test_mavroeidis_papageorgiou_by_peak_acceleration():
     source = f"{WAVES}?period=1.2&amplitude=0.4g"
     made = load_record(source)
     assert made.pga == pytest.approx(0.4 * 9.80665, rel=1e-5)
@@ -108,9 +101,7 @@ def test_mavroeidis_papageorgiou_by_peak_acceleration() -> None:
 
 @pytest.mark.parametrize("period", [0.1, 0.3, 0.7, 1.1, 1.2, 2.3])
 @pytest.mark.parametrize("parts", [7, 100, 999])
-def test_a_step_that_divides_is_accepted_in_spite_of_rounding(
-    period: float, parts: int
-) -> None:
+def test_a_step_that_divides_is_accepted_in_spite_of_rounding(period, parts):
     made = load_record(f"pulse:sine?amplitude=1&period={period}&dt={period / parts!r}")
     assert made.npts == parts + 1
 
@@ -119,14 +110,14 @@ SHIPPED = Path(__file__).parents[2] / "cases" / "records"
 NEAR_FAULT = "synthetic:?pga=0.45g&seed=2&pulse_velocity=0.8&pulse_period=3"
 
 
-def assert_ends_at_rest(made: GroundMotion) -> None:
+def assert_ends_at_rest(made):
     measures = intensity_measures(made)
     # Rounding of a sum of some thousand terms.
     assert abs(velocity(made.acceleration, made.dt)[-1]) < 1e-11 * measures.pgv
     assert abs(displacement(made.acceleration, made.dt)[-1]) < 1e-10 * measures.pgd
 
 
-def test_options_are_honoured() -> None:
+def test_options_are_honoured():
     made = load_record(
         "synthetic:?pga=0.4g&duration=20&dt=0.005&seed=7&ground_frequency=3 Hz"
     )
@@ -137,7 +128,7 @@ def test_options_are_honoured() -> None:
     assert_ends_at_rest(made)
 
 
-def test_the_seed_makes_the_motion() -> None:
+def test_the_seed_makes_the_motion():
     sources = [
         "synthetic:?pga=1&seed=1",
         "synthetic:?seed=1&pga=1",
@@ -148,7 +139,7 @@ def test_the_seed_makes_the_motion() -> None:
     assert one.digest != other.digest
 
 
-def test_a_velocity_pulse() -> None:
+def test_a_velocity_pulse():
     made = load_record(NEAR_FAULT)
     plain = load_record(NEAR_FAULT.partition("&pulse")[0])
     assert made.pga == pytest.approx(0.45 * STANDARD_GRAVITY, rel=1e-14)
@@ -160,7 +151,7 @@ def test_a_velocity_pulse() -> None:
 
 
 @pytest.mark.evidence("synthetic motions", "exact")
-def test_the_spectrum_is_that_of_the_ground() -> None:
+def test_the_spectrum_is_that_of_the_ground():
     # Power averaged over seeds, at the layer's frequency against four times that; well below
     # the low cut (0.24 Hz) it is nearly gone.
     power = np.zeros(1501)
@@ -172,10 +163,10 @@ def test_the_spectrum_is_that_of_the_ground() -> None:
         power += spectrum[:1501]
     frequency = np.fft.rfftfreq(made.npts, made.dt)[:1501]
 
-    def near(f: float) -> float:
+    def near(f):
         return float(power[np.abs(frequency - f) < 0.1 * f].mean())
 
-    def layer(ratio: float, z: float = 0.3) -> float:
+    def layer(ratio, z=0.3):
         return (1 + (2 * z * ratio) ** 2) / ((1 - ratio**2) ** 2 + (2 * z * ratio) ** 2)
 
     # 60 seeds times at least 18 lines (half of them independent under the envelope): 5 %; three
@@ -185,7 +176,7 @@ def test_the_spectrum_is_that_of_the_ground() -> None:
 
 
 @pytest.mark.evidence("synthetic motions", "exact")
-def test_the_strong_part_follows_the_envelope() -> None:
+def test_the_strong_part_follows_the_envelope():
     squares = sum(
         load_record(f"synthetic:?pga=1&seed={n}").acceleration ** 2 for n in range(20)
     )
@@ -254,7 +245,7 @@ def test_the_strong_part_follows_the_envelope() -> None:
         ),
     ],
 )
-def test_refuses(source: str, message: str) -> None:
+def test_refuses(source, message):
     with pytest.raises(RecordError, match=message) as raised:
         load_record(source)
     assert source in str(raised.value)
@@ -263,7 +254,7 @@ def test_refuses(source: str, message: str) -> None:
 @pytest.mark.parametrize(
     "name", ["synthetic_far_field.at2", "synthetic_near_field_pulse.at2"]
 )
-def test_shipped_files_are_what_their_headers_say(name: str) -> None:
+def test_shipped_files_are_what_their_headers_say(name):
     path = SHIPPED / name
     lines = path.read_text().splitlines()
     assert "SYNTHETIC, NOT A RECORDING" in lines[0]

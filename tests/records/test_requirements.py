@@ -1,8 +1,5 @@
 """What codes ask of a set, by numbers of one's own; what recordings are kept."""
 
-from __future__ import annotations
-
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -35,7 +32,7 @@ HAVE = Have(7, "component", "", 1.02, 0.91, (0.1, 1.0))
 STRUCTURE = Periods(0.5, 2.0)
 
 
-def words(rules: str, have: Have, periods: Periods | None) -> list[str]:
+def words(rules, have, periods):
     return [rule.word for rule in RULES[rules].judged(*have, periods)]
 
 
@@ -57,11 +54,11 @@ def words(rules: str, have: Have, periods: Periods | None) -> list[str]:
         ),
     ],
 )
-def test_en1998(have: Have, periods: Periods | None, wanted: list[str]) -> None:
+def test_en1998(have, periods, wanted):
     assert words("en1998", have, periods) == wanted
 
 
-def test_asce7() -> None:
+def test_asce7():
     pairs = Have(11, "rotd100", "MCE_R", float("nan"), 0.9, (0.1, 1.0))
     assert words("asce7-ch16", pairs, STRUCTURE) == ["met"] * 5
     few = pairs._replace(number=10, of="rotd50", level="design", least=0.89)
@@ -73,13 +70,13 @@ def test_asce7() -> None:
     assert words("asce7-ch17", isolated._replace(least=0.99), STRUCTURE)[3] == "NOT MET"
 
 
-def test_nobody_takes_an_unverified_clause_for_the_code() -> None:
+def test_nobody_takes_an_unverified_clause_for_the_code():
     assert RULES["asce7-ch17"].checked.startswith("NOT VERIFIED")
     assert all("not with the text" in r.checked or "VERIFIED" in r.checked or r.span is None
                for r in RULES.values())  # fmt: skip
 
 
-def test_filters() -> None:
+def test_filters():
     known = Recording("a 1999", "b", 6.7, 12e3, 300.0, 4.0, pulse=True)
     motion = GroundMotion(np.ones(101), 0.1, recording=known)
     kept = {
@@ -111,7 +108,7 @@ def test_filters() -> None:
         ("pulse=maybe", "pulse=yes or pulse=no"),
     ],
 )
-def test_filters_that_are_refused(text: str, message: str) -> None:
+def test_filters_that_are_refused(text, message):
     with pytest.raises(UsageError, match=message):
         parse_filter(text)
 
@@ -197,12 +194,12 @@ G = STANDARD_GRAVITY
         ("sp14:?acceleration=0.4g&soil=III", {0.8: 1.0, 3.2: 0.5}),
     ],
 )
-def test_by_hand(source: str, values: dict[float, float]) -> None:
+def test_by_hand(source, values):
     found = load_target(source).acceleration(np.array(list(values))) / G
     np.testing.assert_allclose(found, list(values.values()), rtol=1e-8)
 
 
-def test_peaks_of_the_ground() -> None:
+def test_peaks_of_the_ground():
     target = load_target("en1998:?ag=0.3g&soil=B")
     assert target.pgd == pytest.approx(0.025 * 0.36 * G * 0.5 * 2.0)
     assert target.pgv == pytest.approx(0.45 * G / (2.0 * np.pi) / 1.65)
@@ -215,7 +212,7 @@ def test_peaks_of_the_ground() -> None:
     ).pgv == pytest.approx(0.45634, rel=1e-4)
 
 
-def test_what_is_known_of_a_target() -> None:
+def test_what_is_known_of_a_target():
     """Edition and check are told, and what nobody could check is told as that."""
     sources = {
         "en1998:?ag=1g": ("EN 1998-1:2004", "not with the text"),
@@ -237,13 +234,13 @@ def test_what_is_known_of_a_target() -> None:
     assert target.parameters == "SDS = 0.102 g, SD1 = 0.06 g, TL = 8 s, times 1.5"
 
 
-def table(folder: Path, text: str) -> str:
+def table(folder, text):
     file = folder / "target.csv"
     file.write_text(text, encoding="utf-8")
     return str(file)
 
 
-def test_a_table_with_scatter(tmp_path: Path) -> None:
+def test_a_table_with_scatter(tmp_path):
     rows = "0.1,0.4,0.5\n0.5,1.0,0\n2.0,0.25,0.3\n"
     file = table(tmp_path, f"T [s],median [g],sigma_ln [-]\n{rows}")
     target = load_target(f"{file}?component=RotD50&level=MCE_R")
@@ -257,7 +254,7 @@ def test_a_table_with_scatter(tmp_path: Path) -> None:
         load_target(f"{file}?component=rot50")
 
 
-def test_a_table(tmp_path: Path) -> None:
+def test_a_table(tmp_path):
     file = table(tmp_path, "T [s],Sa [g],note\n0,0.4,x\n0.5,1.0,\n2.0,0.25,\n")
     target = load_target(file)
     # 1 s is half way between 0.5 and 2 in logarithms, as 0.5 is between 1 and 0.25.
@@ -275,7 +272,7 @@ def test_a_table(tmp_path: Path) -> None:
         target.acceleration(np.array([0.1]))
 
 
-def test_the_spectrum_of_a_record_is_a_table(tmp_path: Path) -> None:
+def test_the_spectrum_of_a_record_is_a_table(tmp_path):
     motion = load_record("synthetic:?pga=0.3g&seed=1&duration=4&dt=0.02")
     spectrum = response_spectrum(motion, [0.0, 0.5, 1.0, 2.0])
     file = table(tmp_path, str(dict(record_files(motion, spectrum))["spectrum.csv"]))
@@ -307,7 +304,7 @@ def test_the_spectrum_of_a_record_is_a_table(tmp_path: Path) -> None:
         ("nothing.csv", "there is no file nothing.csv; give a CSV file or a code"),
     ],
 )
-def test_targets_that_are_refused(source: str, message: str) -> None:
+def test_targets_that_are_refused(source, message):
     with pytest.raises(RecordError, match=message):
         load_target(source)
 
@@ -324,6 +321,6 @@ def test_targets_that_are_refused(source: str, message: str) -> None:
         (f"{'x' * 30}\n1,1\n", rf"1: '{'x' * 20}'\.\.\. should"),
     ],
 )
-def test_refuses_tables(tmp_path: Path, text: str, message: str) -> None:
+def test_refuses_tables(tmp_path, text, message):
     with pytest.raises(RecordError, match=message):
         load_target(table(tmp_path, text))

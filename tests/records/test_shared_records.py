@@ -1,8 +1,6 @@
 """Real files, where they are at hand: RPS_RECORDS names a folder with `fema_p695/MANIFEST.csv`
 and `formats/`."""
 
-from __future__ import annotations
-
 import csv
 import hashlib
 import os
@@ -19,7 +17,7 @@ FOLDER = Path(os.environ.get("RPS_RECORDS", "/nonexistent"))
 pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason="RPS_RECORDS names no folder")
 
 
-def test_every_file_of_the_manifest() -> None:
+def test_every_file_of_the_manifest():
     with (FOLDER / "fema_p695" / "MANIFEST.csv").open(
         newline="", encoding="utf-8"
     ) as file:
@@ -72,9 +70,7 @@ def test_every_file_of_the_manifest() -> None:
         ("elcentro_NS_trunc.dat?units=m/s2", "two-column text", 1560, 0.02, 3.1276),
     ],
 )
-def test_samples_of_formats(
-    source: str, form: str, npts: int, dt: float, pga: float
-) -> None:
+def test_samples_of_formats(source, form, npts, dt, pga):
     made = load_record(source, folder=FOLDER / "formats")
     assert (made.format, made.npts) == (form, npts)
     assert made.dt == pytest.approx(dt, rel=1e-12)
@@ -93,12 +89,12 @@ def test_samples_of_formats(
         ("README.md", "no known format"),
     ],
 )
-def test_samples_that_are_refused(source: str, message: str) -> None:
+def test_samples_that_are_refused(source, message):
     with pytest.raises(RecordError, match=message):
         load_record(source, folder=FOLDER / "formats")
 
 
-def test_two_copies_of_el_centro_agree() -> None:
+def test_two_copies_of_el_centro_agree():
     one = load_record("elCentro.txt?units=g", folder=FOLDER / "formats")
     other = load_record("elcentro_NS_trunc.dat?units=m/s2", folder=FOLDER / "formats")
     # The second begins with an added zero and took g = 9.81 m/s2.

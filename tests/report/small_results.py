@@ -1,18 +1,11 @@
 """Small results of every kind, pairs made of them, and what matplotlib has drawn of them."""
 
-from __future__ import annotations
-
-from collections.abc import Callable
 from dataclasses import fields, replace
 from functools import partial
-from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import ArrayLike, NDArray
 
-from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.analyses.trace import Direction
@@ -21,9 +14,7 @@ from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import ModalDamping, Superstructure, profile_stiffnesses
 from rpscli.records.loading import load_record
 from rpscli.report.figures import style
-from rpscli.report.figures.look import USUAL, Look
-
-Array = NDArray[np.float64]
+from rpscli.report.figures.look import USUAL
 
 CURVED = Bearing(1.5, 0.15, 0.30, 0.5)
 ROLLER = Bearing(1.5, 0.15, 0.30, 0.25)  # overturns rolling
@@ -32,14 +23,14 @@ FLAT = Bearing(1.5, 0.15, 0.15, 0.0)
 PREFIXES = {"": 1.0, "k": 1e-3, "M": 1e-6}
 
 
-def building(storeys: int, *, heights: bool = True) -> Superstructure:
+def building(storeys, *, heights=True):
     masses = np.full(storeys, 2e5)
     stiffnesses = profile_stiffnesses(masses, 0.1 * storeys)
     known = np.full(storeys, 3.0) if heights else None
     return Superstructure(masses, stiffnesses, ModalDamping(0.05), known)
 
 
-def yielding(storeys: int = 2, hardening: float = 0.05) -> PodiumStructure:
+def yielding(storeys=2, hardening=0.05):
     """Storeys that yield below the shear at uplift."""
     above = replace(
         building(storeys), strengths=np.full(storeys, 2e5), hardening=hardening
@@ -47,22 +38,18 @@ def yielding(storeys: int = 2, hardening: float = 0.05) -> PodiumStructure:
     return replace(structure(storeys=storeys), superstructure=above)
 
 
-def structure(
-    bearing: Bearing = CURVED, storeys: int = 2, *, heights: bool = True
-) -> PodiumStructure:
+def structure(bearing=CURVED, storeys=2, *, heights=True):
     above = building(storeys, heights=heights) if storeys else None
     return PodiumStructure(bearing, 2e4, 2e5, above)
 
 
-def history(
-    made: PodiumStructure, pulse: str, free: float | None = 0.5
-) -> TimeHistoryResult:
+def history(made, pulse, free=0.5):
     return time_history(
         made, load_record(pulse), TimeHistorySettings(free_vibration=free)
     )
 
 
-KINDS: dict[str, Callable[[], TimeHistoryResult]] = {
+KINDS = {
     "rolls": lambda: history(structure(), "pulse:half_sine?amplitude=0.3g&period=0.6"),
     "at rest": lambda: history(structure(), "pulse:half_sine?amplitude=0.01g&period=0.6"),
     "overturns": lambda: history(
@@ -78,43 +65,41 @@ KINDS: dict[str, Callable[[], TimeHistoryResult]] = {
 }
 
 
-def drawn(
-    function: Callable[..., None], *arguments: object, look: Look = USUAL
-) -> Figure:
+def drawn(function, *arguments, look=USUAL):
     """The figure that a function draws, with a look."""
     return style.drawn(partial(function, *arguments), look)
 
 
-def curve(axes: Axes, label: str) -> tuple[Array, Array]:
+def curve(axes, label):
     """Abscissae and ordinates of the line with a label."""
     (line,) = [line for line in axes.lines if line.get_label() == label]
     return np.asarray(line.get_xdata(), float), np.asarray(line.get_ydata(), float)
 
 
-def is_drawn(found: tuple[Array, Array], x: ArrayLike, y: ArrayLike) -> None:
+def is_drawn(found, x, y):
     """Require that a line goes through points."""
     for drawn, wanted in zip(found, (x, y), strict=True):
         # but for the order of a product
         np.testing.assert_allclose(drawn, np.asarray(wanted, float), rtol=1e-13)
 
 
-def legend(of: Axes | Figure) -> list[str]:
+def legend(of):
     """Entries of the legend of axes or of a figure."""
     found = of.legends[0] if isinstance(of, Figure) else of.get_legend()
     assert found is not None
     return [text.get_text() for text in found.get_texts()]
 
 
-def prefix(label: str, unit: str) -> float:
+def prefix(label, unit):
     """Factor of a prefixed unit in the brackets of an axis label."""
     name = label[label.rindex("[") + 1 : label.rindex("]")]
     assert name.endswith(unit)
     return PREFIXES[name.removesuffix(unit)]
 
 
-def second_axis(axes: Axes) -> Any:
+def second_axis(axes):
     """The axis on the other side, with the limits that it is drawn with."""
-    axes.get_figure().draw_without_rendering()  # type: ignore[union-attr]
+    axes.get_figure().draw_without_rendering()
     (second,) = axes.child_axes
     return second
 
@@ -123,20 +108,20 @@ ANGLE = np.radians(140.0)
 """Of the plane of motion, from x towards y."""
 
 
-def turned(kind: str = "rolls", angle: float | Array = ANGLE) -> TimeHistoryResult:
+def turned(kind="rolls", angle=ANGLE):
     """A history in a vertical plane at an azimuth (samples,) [rad], told in x and y."""
     plane = KINDS[kind]()
     trace = plane.trace
     names = [each.name for each in fields(Direction)]
     cosine, sine = np.broadcast_arrays(np.cos(angle), np.sin(angle), trace.time)[:2]
 
-    def along(part: Array) -> dict[str, Array]:
+    def along(part):
         found = {name: getattr(trace, name) for name in names}
         shapes = {n: (-1, *[1] * (v.ndim - 1)) for n, v in found.items() if v is not None}
         return found | {n: part.reshape(shape) * found[n] for n, shape in shapes.items()}
 
     azimuth = np.arctan2(np.sign(trace.rotation) * sine, np.sign(trace.rotation) * cosine)
-    pair: dict[str, Any] = along(cosine) | {
+    pair = along(cosine) | {
         "rotation": np.abs(trace.rotation),
         "rotation_rate": np.sign(trace.rotation) * trace.rotation_rate,
         "azimuth": np.where(trace.rotation == 0.0, 0.0, azimuth),

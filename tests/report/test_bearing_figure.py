@@ -1,21 +1,17 @@
 """The drawing of the bearing: true to scale, and its numbers are those of the structure."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 import pytest
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from report.small_results import CURVED, FLAT, ROLLER, drawn, structure
 from rpscli.analyses.pushover import pushover
 from rpscli.model.bearing import Bearing
 from rpscli.model.devices import FrictionDamper, Stop, Tendon
-from rpscli.model.podium import PodiumStructure
 from rpscli.report.figures import style
 from rpscli.report.figures.bearing import BearingView, draw_bearing, draw_end
 from rpscli.report.figures.look import Look
@@ -24,7 +20,7 @@ from rpscli.report.figures.structure import bearing_figure
 WIDE = Bearing(1.0, 0.75, 1.2, 0.5)
 
 
-def texts(axes: Axes) -> list[str]:
+def texts(axes):
     return [text for each in axes.texts if (text := each.get_text())]
 
 
@@ -44,9 +40,7 @@ def texts(axes: Axes) -> list[str]:
     ],
 )
 @pytest.mark.parametrize("columns", [1, 2])
-def test_states_an_end_and_the_force(
-    bearing: Bearing, titles: list[str], columns: int
-) -> None:
+def test_states_an_end_and_the_force(bearing, titles, columns):
     result = pushover(structure(bearing, 2))
     figure = drawn(bearing_figure, result, "a title", look=Look(columns=columns))
     assert figure.get_suptitle() == "a title"
@@ -65,7 +59,7 @@ def test_states_an_end_and_the_force(
 
 @pytest.mark.parametrize("columns", [1, 2])
 @pytest.mark.parametrize("gap", [1e2, 1e9])
-def test_stops_far_away_leave_room_for_all_panels(gap: float, columns: int) -> None:
+def test_stops_far_away_leave_room_for_all_panels(gap, columns):
     made = replace(structure(CURVED, 2), devices=(Stop(gap, 4e6),))
     draw = partial(bearing_figure, pushover(made), "a title")
     assert style.picture(
@@ -75,9 +69,7 @@ def test_stops_far_away_leave_room_for_all_panels(gap: float, columns: int) -> N
 
 @pytest.mark.parametrize("bearing", [CURVED, FLAT, ROLLER, WIDE])
 @pytest.mark.parametrize("part", [-1.0, 0.4, 1.0])
-def test_a_column_leans_between_ground_and_cap_beam(
-    bearing: Bearing, part: float
-) -> None:
+def test_a_column_leans_between_ground_and_cap_beam(bearing, part):
     made = structure(bearing, 0)
     rotation = part * made.critical_rotation
     axes = Figure().subplots()
@@ -110,7 +102,7 @@ def test_a_column_leans_between_ground_and_cap_beam(
     )
 
 
-def _arm(made: PodiumStructure, rotation: float) -> float:
+def _arm(made, rotation):
     """B from F = W B/C (Theory, section 5)."""
     x = np.array([rotation])
     force, _, _ = made.path(x)
@@ -119,13 +111,13 @@ def _arm(made: PodiumStructure, rotation: float) -> float:
     )
 
 
-def test_dimensions_are_written_and_drawn_to_scale() -> None:
+def test_dimensions_are_written_and_drawn_to_scale():
     axes = Figure().subplots()
     draw_bearing(axes, structure(CURVED, 0))
     assert texts(axes) == ["$R$", "$\\alpha$", "2H = 2.967 m"]
     assert axes.get_title() == "at rest\n$\\alpha$ = 0.149 rad, $R$ = 1.5 m"
     (upright,) = [each for each in axes.texts if not each.get_text()]
-    assert upright.xy[1] == pytest.approx(2.0 * CURVED.half_height)  # type: ignore[attr-defined]
+    assert upright.xy[1] == pytest.approx(2.0 * CURVED.half_height)
     (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
     assert (high - low) / (right - left) == pytest.approx(axes.get_box_aspect())
 
@@ -141,7 +133,7 @@ def test_dimensions_are_written_and_drawn_to_scale() -> None:
     assert texts(axes) == wanted
     spans = [
         abs(each.xy[0] - each.xyann[0]) for each in axes.texts if not each.get_text()
-    ]  # type: ignore[attr-defined]
+    ]
     assert spans == pytest.approx(
         [2.0 * CURVED.half_width, 0.3 * 2.0 * CURVED.half_height]
     )
@@ -151,7 +143,7 @@ def test_dimensions_are_written_and_drawn_to_scale() -> None:
     assert texts(axes) == ["2B = 0.445 m"]
 
 
-def test_displacement_and_lift_are_written_and_drawn_to_scale() -> None:
+def test_displacement_and_lift_are_written_and_drawn_to_scale():
     made = structure(CURVED, 0)
     axes = Figure().subplots()
     draw_bearing(axes, made, 0.1)
@@ -161,16 +153,16 @@ def test_displacement_and_lift_are_written_and_drawn_to_scale() -> None:
     )
     assert texts(axes) == ["$u_b$", "$v_b$"]
     across, upwards = (each for each in axes.texts if not each.get_text())
-    assert across.xy[0] - across.xyann[0] == pytest.approx(u[0])  # type: ignore[attr-defined]
-    assert upwards.xy[1] - upwards.xyann[1] == pytest.approx(v[0])  # type: ignore[attr-defined]
+    assert across.xy[0] - across.xyann[0] == pytest.approx(u[0])
+    assert upwards.xy[1] - upwards.xyann[1] == pytest.approx(v[0])
 
 
-def test_a_free_standing_block_carries_nothing() -> None:
+def test_a_free_standing_block_carries_nothing():
     block = replace(structure(FLAT, 0), cap_beam_mass=0.0)
     assert BearingView(Figure().subplots(), block).beam is None
 
 
-def test_devices_are_in_the_drawing() -> None:
+def test_devices_are_in_the_drawing():
     devices = (Stop(0.2, 4e6), Tendon(2e4, 1e6), FrictionDamper(1e5))
     made = replace(structure(CURVED, 0), devices=devices)
     axes = Figure().subplots()

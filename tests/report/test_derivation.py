@@ -1,25 +1,21 @@
 """Formulas with numbers put in, of a case and of its most loaded column."""
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
 from paper_structures import needs_compiled_kernels
 
 from report.small_results import drawn
-from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.timehistory import time_history
-from rpscli.case.case import Case, load_case, parse_case
+from rpscli.case.case import load_case, parse_case
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.loading import load_record
 from rpscli.report import derived
 from rpscli.report.case_page import column_sections
-from rpscli.report.derived import FUNCTIONS, Derivation, column_derivations, derivations
+from rpscli.report.derived import FUNCTIONS, column_derivations, derivations
 from rpscli.report.figures.bearing import column_figure
 from rpscli.report.page import Picture
 from rpscli.report.table import Table
@@ -46,13 +42,13 @@ VARIANTS = {
 SIGNS = {"·": "*", "−": "-", "²": "**2", "³": "**3", "√": "sqrt"}
 
 
-def case_of(name: str) -> Case:
+def case_of(name):
     if name in VARIANTS:
         return load_case(SIX, VARIANTS[name])
     return load_case(next(path for path in CASES if path.stem == name))
 
 
-def evaluated(text: str) -> float:
+def evaluated(text):
     """What a calculator says."""
     for sign, operator in SIGNS.items():
         text = text.replace(sign, operator)
@@ -60,14 +56,14 @@ def evaluated(text: str) -> float:
     return float(eval(text, {name: getattr(math, name) for name in FUNCTIONS}))  # noqa: S307
 
 
-def found(case: Case) -> list[Derivation]:
+def found(case):
     return list(derivations(case.structure, case.document["podium"]))
 
 
 @pytest.mark.parametrize("name", [*(path.stem for path in CASES), *VARIANTS])
 def test_the_formula_with_its_numbers_gives_the_value_or_it_stands_in_the_case(
-    name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    name, monkeypatch
+):
     monkeypatch.setattr(derived, "DIGITS", 17)  # all digits: what is left is rounding
     case = case_of(name)
     given = set(leaves(case.document["podium"]))
@@ -86,14 +82,14 @@ def test_the_formula_with_its_numbers_gives_the_value_or_it_stands_in_the_case(
         assert sides[0] == pytest.approx(wanted, rel=1e-9, abs=tolerance), row
 
 
-def leaves(content: Any) -> list[float]:
+def leaves(content):
     if isinstance(content, dict):
         return [number for value in content.values() for number in leaves(value)]
     return [float(content)] if isinstance(content, int | float) else []
 
 
-def test_the_branch_of_the_critical_rotation_is_the_one_that_is_travelled() -> None:
-    def formula(case: Case, name: str) -> str:
+def test_the_branch_of_the_critical_rotation_is_the_one_that_is_travelled():
+    def formula(case, name):
         return next(row.formula for row in found(case) if row.name == name)
 
     rolling, rocking = "atan(tan α / (1 − 2 ρ))", "atan(tan α′ / (1 − 2 ρ (1 − cos(β))))"
@@ -112,7 +108,7 @@ def test_the_branch_of_the_critical_rotation_is_the_one_that_is_travelled() -> N
     assert formula(case_of("stiffens"), "critical_rotation") == rocking
 
 
-def test_numbers_have_six_digits() -> None:
+def test_numbers_have_six_digits():
     row = next(row for row in found(case_of("six_storey")) if row.name == "column_height")
     assert (row.symbol, row.formula, row.numbers) == (
         "2H",
@@ -121,7 +117,7 @@ def test_numbers_have_six_digits() -> None:
     )
 
 
-def test_a_case_in_memory_will_do() -> None:
+def test_a_case_in_memory_will_do():
     text = SIX.read_text("utf-8")
     assert found(parse_case(text, name="x")) == found(case_of("six_storey"))
 
@@ -140,7 +136,7 @@ COLUMNS = {
 }
 
 
-def result_of(name: str, *, both: bool = False, factor: float = 1.0) -> TimeHistoryResult:
+def result_of(name, *, both=False, factor=1.0):
     case = load_case(DESIGNED, COLUMNS[name])
     push = load_record(
         str(DESIGNED.parent / "records" / "synthetic_far_field.at2")
@@ -153,7 +149,7 @@ def result_of(name: str, *, both: bool = False, factor: float = 1.0) -> TimeHist
 
 @needs_compiled_kernels
 @pytest.mark.parametrize("name", COLUMNS)
-def test_instants_and_their_formulas(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_instants_and_their_formulas(name, monkeypatch):
     monkeypatch.setattr(derived, "DIGITS", 17)
     result = result_of(name)
     found = list(column_derivations(result))
@@ -175,7 +171,7 @@ def test_instants_and_their_formulas(name: str, monkeypatch: pytest.MonkeyPatch)
 
 
 @needs_compiled_kernels
-def test_ends_of_concrete_would_not_do() -> None:
+def test_ends_of_concrete_would_not_do():
     """What the comment of the case says, at the scale of its record."""
     ratios = [
         result_of(n, factor=0.7).contact_pressure_ratio or 0
@@ -185,7 +181,7 @@ def test_ends_of_concrete_would_not_do() -> None:
 
 
 @needs_compiled_kernels
-def test_what_the_model_and_codes_do_not_cover_is_said() -> None:
+def test_what_the_model_and_codes_do_not_cover_is_said():
     strong = result_of("square", factor=2.0)
     assert any("EN 1337-4" in text for text in strong.warnings) == (
         strong.max_rotation > 0.05

@@ -1,7 +1,5 @@
 """Figures as a user asks for them: films, formats, widths, fonts; the same for the same result."""
 
-from __future__ import annotations
-
 import io
 import os
 import re
@@ -25,7 +23,7 @@ from rpscli.report.figures.look import USUAL, FilmRequest, Look, read_style
 from rpscli.tools.animation.film import frame_plan, modes_film
 
 
-def test_a_figure_depends_on_its_result_alone() -> None:
+def test_a_figure_depends_on_its_result_alone():
     result = KINDS["rolls"]()
     draw = partial(rotation_figure, result, "title")
     first = style.picture(draw, USUAL, "png")
@@ -33,7 +31,7 @@ def test_a_figure_depends_on_its_result_alone() -> None:
         assert style.picture(draw, USUAL, "png") == first
 
 
-def test_floors_in_the_figure_are_floors_of_the_building() -> None:
+def test_floors_in_the_figure_are_floors_of_the_building():
     for storeys in range(60):
         floors = shown_floors(storeys)
         assert len(floors) == min(storeys, 3)
@@ -42,7 +40,7 @@ def test_floors_in_the_figure_are_floors_of_the_building() -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_an_animation_shows_the_motion_from_its_first_to_its_last(kind: str) -> None:
+def test_an_animation_shows_the_motion_from_its_first_to_its_last(kind):
     result = KINDS[kind]()
     samples, speed = frame_plan(result, FilmRequest(Path("film.gif")))
     assert 2 <= len(samples) <= 180  # 9 s
@@ -53,7 +51,7 @@ def test_an_animation_shows_the_motion_from_its_first_to_its_last(kind: str) -> 
     assert speed > 0.0
 
 
-def test_speed_and_part_of_an_animation_are_those_that_were_asked_for() -> None:
+def test_speed_and_part_of_an_animation_are_those_that_were_asked_for():
     result = KINDS["rolls"]()
     time = result.trace.time
     wanted = FilmRequest(Path("film.gif"), speed=0.5, first=0.2, last=0.8)
@@ -76,29 +74,25 @@ def test_speed_and_part_of_an_animation_are_those_that_were_asked_for() -> None:
         ("film.gif", {"last": 0.0}, "later than --animate-from 0"),
     ],
 )
-def test_a_film_that_cannot_be_is_refused(
-    file: str, wishes: dict[str, float], says: str
-) -> None:
+def test_a_film_that_cannot_be_is_refused(file, wishes, says):
     with pytest.raises(UsageError, match=says):
-        frame_plan(KINDS["rolls"](), FilmRequest(Path(file), **wishes))  # type: ignore[arg-type]
+        frame_plan(KINDS["rolls"](), FilmRequest(Path(file), **wishes))
 
 
-def test_mp4_needs_its_encoder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_mp4_needs_its_encoder(monkeypatch, tmp_path):
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(UsageError, match=r"needs the program ffmpeg.*or write film\.gif"):
         FilmRequest(Path("film.mp4"))
 
 
-def test_mp4_is_what_its_ending_says(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_mp4_is_what_its_ending_says(monkeypatch, tmp_path):
     ffmpeg = pytest.importorskip("imageio_ffmpeg")
     shutil.copy(
         ffmpeg.get_ffmpeg_exe(), tmp_path / f"ffmpeg{'.exe' * (sys.platform == 'win32')}"
     )
     monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
     file = tmp_path / "film.mp4"
-    drawn: list[int] = []
+    drawn = []
     # An odd width, which the format does not know.
     film = modes_film(
         modal(structure(CURVED, 1)),
@@ -113,9 +107,7 @@ def test_mp4_is_what_its_ending_says(
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="a script is no program there")
-def test_an_encoder_that_fails_is_told(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_an_encoder_that_fails_is_told(monkeypatch, tmp_path):
     broken = tmp_path / "ffmpeg"
     broken.write_text("#!/bin/sh\nexit 3\n")
     broken.chmod(0o755)
@@ -124,11 +116,11 @@ def test_an_encoder_that_fails_is_told(
         modes_film(modal(structure(FLAT, 0)), "title", FilmRequest(Path("film.mp4")))
 
 
-def drawn_as(ending: str, look: Look = USUAL, title: str = "title") -> bytes:
+def drawn_as(ending, look=USUAL, title="title"):
     return style.picture(partial(rotation_figure, KINDS["rolls"](), title), look, ending)
 
 
-def test_each_format_is_what_its_ending_says_and_the_same_for_the_same_data() -> None:
+def test_each_format_is_what_its_ending_says_and_the_same_for_the_same_data():
     files = {ending: drawn_as(ending) for ending in ("png", "svg", "pdf")}
     assert files["png"].startswith(b"\x89PNG")
     assert files["pdf"].startswith(b"%PDF")
@@ -137,7 +129,7 @@ def test_each_format_is_what_its_ending_says_and_the_same_for_the_same_data() ->
 
 
 @pytest.mark.parametrize(("columns", "inches"), [(1, 3.5), (2, 7.0)])
-def test_a_figure_fills_columns_of_a_journal(columns: int, inches: float) -> None:
+def test_a_figure_fills_columns_of_a_journal(columns, inches):
     width, _ = Image.open(io.BytesIO(drawn_as("png", Look(columns=columns)))).size
     assert width == pytest.approx(inches * style.DPI, abs=1)
     found = re.search(rb'width="([\d.]+)pt"', drawn_as("svg", Look(columns=columns)))
@@ -145,7 +137,7 @@ def test_a_figure_fills_columns_of_a_journal(columns: int, inches: float) -> Non
     assert float(found[1]) == pytest.approx(72.0 * inches)
 
 
-def test_a_style_file_goes_over_ours(tmp_path: Path) -> None:
+def test_a_style_file_goes_over_ours(tmp_path):
     file = tmp_path / "paper.mplstyle"
     file.write_text(
         "font.family: serif\nfont.size: 12\nfigure.figsize: 5, 9\nlines.linewidth: 3\n"
@@ -165,7 +157,7 @@ def test_a_style_file_goes_over_ours(tmp_path: Path) -> None:
     assert 3.0 in {line.get_linewidth() for line in axes.lines}
 
 
-def test_text_of_svg_is_text_with_fonts_to_fall_back_on() -> None:
+def test_text_of_svg_is_text_with_fonts_to_fall_back_on():
     found = drawn_as("svg", title="Six storeys").decode()
     assert ">Six storeys   |   " in found
     assert "time [s]</text>" in found
@@ -175,9 +167,7 @@ def test_text_of_svg_is_text_with_fonts_to_fall_back_on() -> None:
     assert all(family.endswith(", sans-serif") for family in families)
 
 
-def test_a_style_says_nothing_of_windows_and_little_of_other_files(
-    tmp_path: Path,
-) -> None:
+def test_a_style_says_nothing_of_windows_and_little_of_other_files(tmp_path):
     file = tmp_path / "paper.mplstyle"
     file.write_text("backend: TkAgg\nlines.markersize: 3\n")
     assert style.drawable_style(file) == {"lines.markersize": 3.0}
@@ -206,11 +196,8 @@ CANNOT = r"paper.mplstyle: cannot be drawn with: .*correct"
     ],
 )  # fmt: skip
 def test_a_style_that_is_nonsense_is_blamed_before_anything_is_computed(
-    tmp_path: Path,
-    text: str | bytes | None,
-    reason: str,
-    capfd: pytest.CaptureFixture[str],
-) -> None:
+    tmp_path, text, reason, capfd
+):
     file = tmp_path / "paper.mplstyle"
     if text is not None:
         file.write_bytes(text if isinstance(text, bytes) else text.encode())
@@ -219,9 +206,7 @@ def test_a_style_that_is_nonsense_is_blamed_before_anything_is_computed(
     assert capfd.readouterr() == ("", "")
 
 
-def test_letters_that_the_font_lacks_and_formulas_that_are_none_make_no_noise(
-    capfd: pytest.CaptureFixture[str],
-) -> None:
+def test_letters_that_the_font_lacks_and_formulas_that_are_none_make_no_noise(capfd):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert drawn_as("png", title="地震 \x07 costs 5 $ or \\frac" + 200 * "x")

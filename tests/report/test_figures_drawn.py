@@ -1,15 +1,11 @@
 """What the figures of one analysis draw: every line, limit, label and unit against its result."""
 
-from __future__ import annotations
-
 import io
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import StepPatch
@@ -31,14 +27,11 @@ from report.small_results import (
 )
 from rpscli import figures
 from rpscli.analyses.modal import modal
-from rpscli.analyses.pushover import PushoverResult, pushover
-from rpscli.analyses.results import TimeHistoryResult
+from rpscli.analyses.pushover import pushover
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.errors import UsageError
-from rpscli.model.bearing import Bearing
 from rpscli.model.devices import FrictionDamper, Stop, Tendon, ViscousDamper
-from rpscli.model.podium import Device
 from rpscli.records import measures
 from rpscli.records.loading import load_record
 from rpscli.records.measures import response_spectrum
@@ -65,26 +58,26 @@ from rpscli.tools.animation.film import Scene, frame_plan, history_film, modes_f
 
 
 @pytest.fixture(params=KINDS)
-def result(request: pytest.FixtureRequest) -> TimeHistoryResult:
+def result(request):
     return KINDS[request.param]()
 
 
-def reach(axes: Axes, label: str) -> tuple[float, float]:
+def reach(axes, label):
     """Lowest and highest ordinate of a filled area."""
     (area,) = [c for c in axes.collections if c.get_label() == label]
     assert isinstance(area, PolyCollection)
-    y = np.concatenate([path.vertices[:, 1] for path in area.get_paths()])  # type: ignore[index]
+    y = np.concatenate([path.vertices[:, 1] for path in area.get_paths()])
     return float(np.nanmin(y)), float(np.nanmax(y))
 
 
-def steps(axes: Axes, label: str) -> StepPatch:
+def steps(axes, label):
     (patch,) = [p for p in axes.patches if p.get_label() == label]
     assert isinstance(patch, StepPatch)
     assert patch.orientation == "horizontal"
     return patch
 
 
-def test_rotation(result: TimeHistoryResult) -> None:
+def test_rotation(result):
     trace, made = result.trace, result.structure
     figure = drawn(rotation_figure, result, "a title")
     words = " ".join(figure.get_suptitle().replace("|", " ").split())
@@ -135,20 +128,20 @@ def test_rotation(result: TimeHistoryResult) -> None:
         assert marks.get(f"{name}: {len(times)}", []) == times
 
 
-def test_the_shades_of_the_phases_begin_and_end_with_them() -> None:
+def test_the_shades_of_the_phases_begin_and_end_with_them():
     result = KINDS["overturns"]()
     time, phase = result.trace.time, result.trace.phase
     axes = drawn(rotation_figure, result, "").axes[1]
     for code, name in ((1, "rolling"), (2, "rocking")):
         (shade,) = [c for c in axes.collections if c.get_label() == name]
-        x = np.concatenate([path.vertices[:, 0] for path in shade.get_paths()])  # type: ignore[index]
+        x = np.concatenate([path.vertices[:, 0] for path in shade.get_paths()])
         inside = np.flatnonzero(phase == code)
         assert x.min() == time[inside[0]]
         # the last sample of a phase is shaded up to itself or to the next one
         assert x.max() in time[inside[-1] :][:2]
 
 
-def test_displacements(result: TimeHistoryResult) -> None:
+def test_displacements(result):
     trace, storeys = result.trace, result.structure.storeys
     whole, *elastic = drawn(displacement_figure, result, "").axes
     is_drawn(curve(whole, "cap beam"), trace.time, trace.cap_beam_displacement)
@@ -166,7 +159,7 @@ def test_displacements(result: TimeHistoryResult) -> None:
             assert name in legend(axes)
 
 
-def energies(result: TimeHistoryResult, axes: Axes, *names: str) -> None:
+def energies(result, axes, *names):
     """Require that parts of the energy stand on top of each other, with these between."""
     trace, made = result.trace, result.structure
     factor = prefix(axes.get_ylabel(), "J")
@@ -189,14 +182,14 @@ def energies(result: TimeHistoryResult, axes: Axes, *names: str) -> None:
     assert {*legend(axes)} == {*(name for name, _ in parts), "input"}
 
 
-def test_energy(result: TimeHistoryResult) -> None:
+def test_energy(result):
     axes = Figure().subplots()
     figures.energy(axes, result)
     assert axes.get_xlim() == (0.0, result.trace.time[-1])
     energies(result, axes)
 
 
-DEVICES: tuple[Device, ...] = (
+DEVICES = (
     FrictionDamper(1e5),
     Stop(0.02, 4e6, 1e5),
     Tendon(2e4, 1e6, 3e4),
@@ -205,13 +198,13 @@ DEVICES: tuple[Device, ...] = (
 
 
 @pytest.fixture(scope="module")
-def equipped() -> TimeHistoryResult:
+def equipped():
     made = replace(structure(CURVED, 3), devices=DEVICES, columns=4)
     record = load_record("pulse:sine?amplitude=0.4g&period=0.8&dt=0.01")
     return time_history(made, record, TimeHistorySettings(free_vibration=2.0))
 
 
-def test_loops_of_devices(equipped: TimeHistoryResult) -> None:
+def test_loops_of_devices(equipped):
     trace = equipped.trace.devices
     panels = drawn(devices_figure, equipped, "").axes
     names = [
@@ -242,7 +235,7 @@ def test_loops_of_devices(equipped: TimeHistoryResult) -> None:
     energies(equipped, axes, *names)
 
 
-def test_loops_of_storeys_that_yield() -> None:
+def test_loops_of_storeys_that_yield():
     result = KINDS["yields"]()
     trace, above = result.trace, known(result.structure.superstructure)
     panels, F = drawn(loops_figure, result, "").axes, known(above.strengths)
@@ -268,7 +261,7 @@ def test_loops_of_storeys_that_yield() -> None:
     assert shown_floors(9, MOST_STOREYS) == [1, 3, 4, 6, 7, 9]
 
 
-def test_moment(result: TimeHistoryResult) -> None:
+def test_moment(result):
     trace = result.trace
     axes = Figure().subplots()
     figures.moment_rotation(axes, result)
@@ -303,7 +296,7 @@ def test_moment(result: TimeHistoryResult) -> None:
 
 
 @pytest.mark.parametrize("kind", ["rolls", "overturns", "flat, one storey, no heights"])
-def test_profiles(kind: str) -> None:
+def test_profiles(kind):
     result = KINDS[kind]()
     made, fixed = result.structure, result.fixed_base
     assert made.superstructure is not None
@@ -339,7 +332,7 @@ def test_profiles(kind: str) -> None:
 
 
 @pytest.mark.parametrize(("bearing", "storeys"), [(CURVED, 4), (FLAT, 1), (ROLLER, 0)])
-def test_modes(bearing: Bearing, storeys: int) -> None:
+def test_modes(bearing, storeys):
     result = modal(structure(bearing, storeys))
     states = {"rolling": result.rolling, "rocking": result.rocking}
     figure = drawn(modes_figure, result, "")
@@ -374,11 +367,11 @@ def test_modes(bearing: Bearing, storeys: int) -> None:
 
 
 @pytest.fixture
-def pushed() -> PushoverResult:
+def pushed():
     return pushover(structure(CURVED, 3))
 
 
-def test_storey_curve(pushed: PushoverResult) -> None:
+def test_storey_curve(pushed):
     found, beta = pushed.curve, pushed.structure.bearing.beta
     force, lift = drawn(storey_curve_figure, pushed, "").axes
     factor = prefix(force.get_ylabel(), "N")
@@ -401,7 +394,7 @@ def test_storey_curve(pushed: PushoverResult) -> None:
     np.testing.assert_allclose(
         y[np.unique(x, return_index=True)[1]], 1e3 * found.lift, rtol=1e-13
     )
-    where = {text.get_text(): text.xy for text in force.texts}  # type: ignore[attr-defined]
+    where = {text.get_text(): text.xy for text in force.texts}
     assert where["uplift"] == pytest.approx(
         (0.0, factor * pushed.uplift_force), rel=1e-13
     )
@@ -414,7 +407,7 @@ def test_storey_curve(pushed: PushoverResult) -> None:
     assert ratio.get_ylim()[1] == pytest.approx(top, rel=1e-12)
 
 
-def test_capacity(pushed: PushoverResult) -> None:
+def test_capacity(pushed):
     figure = drawn(capacity_figure, pushed, "")
     whole, close = figure.axes
     factor = prefix(whole.get_ylabel(), "N")
@@ -436,7 +429,7 @@ def test_capacity(pushed: PushoverResult) -> None:
     assert close.get_xlim() == (0.0, 3.0 * uplift)
 
 
-def test_record() -> None:
+def test_record():
     motion = load_record("pulse:sine?amplitude=0.3g&period=0.8")
     spectrum = response_spectrum(motion, np.linspace(0.1, 2.0, 20))
     figure = drawn(record_figure, motion, spectrum, None)
@@ -459,7 +452,7 @@ def test_record() -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_scene_is_true_to_scale_but_for_the_drifts(kind: str) -> None:
+def test_a_scene_is_true_to_scale_but_for_the_drifts(kind):
     result = KINDS[kind]()
     trace, storeys = result.trace, result.structure.storeys
     axes = Figure().subplots()
@@ -493,11 +486,11 @@ GIF = FilmRequest(Path("film.gif"))
 
 
 @pytest.fixture
-def filmed(monkeypatch: pytest.MonkeyPatch) -> list[Figure]:
+def filmed(monkeypatch):
     """Figures of which films were made."""
-    found: list[Figure] = []
+    found = []
 
-    def sheet() -> Figure:
+    def sheet():
         found.append(made())
         return found[-1]
 
@@ -506,13 +499,13 @@ def filmed(monkeypatch: pytest.MonkeyPatch) -> list[Figure]:
     return found
 
 
-def test_an_animation_runs_along_the_record(filmed: list[Figure]) -> None:
+def test_an_animation_runs_along_the_record(filmed):
     result = KINDS["rolls"]()
     trace, (samples, _) = result.trace, frame_plan(result, GIF)
-    cursors: list[float] = []
-    contacts: list[float] = []
+    cursors = []
+    contacts = []
 
-    def progress(done: int, total: int) -> None:
+    def progress(done, total):
         assert total == len(samples)
         _, end, record = filmed[0].axes
         cursors.append(float(np.asarray(record.lines[1].get_xdata())[0]))
@@ -537,15 +530,13 @@ def test_an_animation_runs_along_the_record(filmed: list[Figure]) -> None:
     assert record.get_xlim() == (cursors[0], cursors[-1])
 
 
-def test_mode_shapes_swing_there_and_back_and_the_rest_stays(
-    filmed: list[Figure],
-) -> None:
+def test_mode_shapes_swing_there_and_back_and_the_rest_stays(filmed):
     """Curves and the frames themselves: between two of them only what moves has changed."""
     result = modal(structure(CURVED, 2))
     assert result.rolling is not None
-    seen: list[Any] = []
+    seen = []
 
-    def progress(_done: int, _total: int) -> None:
+    def progress(_done, _total):
         seen.append(np.array(curve(filmed[0].axes[0], "uplifted")[0]))
 
     made, frames = modes_film(result, "a title", GIF, progress=progress), []

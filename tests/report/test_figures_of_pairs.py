@@ -1,13 +1,9 @@
 """Figures under both components: a motion in one plane, turned, looks as it does in its own."""
 
-from __future__ import annotations
-
 from dataclasses import fields
-from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
@@ -32,11 +28,11 @@ from rpscli.tools.animation.film import PlanView, Scene, frame_plan, history_fil
 
 
 @pytest.fixture(params=["rolls", "overturns", "frame", "at rest"])
-def kind(request: pytest.FixtureRequest) -> str:
+def kind(request):
     return str(request.param)
 
 
-def test_a_plane_motion_is_found_again(kind: str) -> None:
+def test_a_plane_motion_is_found_again(kind):
     """In the plane of the tilt all is as it was, but for which side is called right."""
     plane, pair = KINDS[kind]().trace, turned(kind)
     seen = history.in_plane(pair).trace
@@ -55,7 +51,7 @@ def test_a_plane_motion_is_found_again(kind: str) -> None:
     assert history.in_plane(KINDS[kind]()).trace.rotation is not None
 
 
-def test_the_plane_turns_without_jumps_and_on_while_all_stands() -> None:
+def test_the_plane_turns_without_jumps_and_on_while_all_stands():
     """Columns that go round at 2 rad/s and pass upright each second lean in a plane that turns."""
     pair = turned()
     time = pair.trace.time
@@ -69,7 +65,7 @@ def test_the_plane_turns_without_jumps_and_on_while_all_stands() -> None:
     assert np.abs(np.diff(found)).max() < 2.0 * pair.record.dt + 1e-9
 
 
-def test_displacements_in_x_and_in_y() -> None:
+def test_displacements_in_x_and_in_y():
     pair, plane = turned(), KINDS["rolls"]().trace
     figure = drawn(history.displacement_figure, pair, "a title")
     axes = figure.axes
@@ -80,7 +76,7 @@ def test_displacements_in_x_and_in_y() -> None:
     assert history.component(pair, "y").trace.y is None
 
 
-def test_rotation_and_azimuth() -> None:
+def test_rotation_and_azimuth():
     pair = turned()
     ground, rotation, azimuth, events = drawn(
         history.rotation_figure, pair, "a title"
@@ -108,11 +104,11 @@ def test_rotation_and_azimuth() -> None:
     assert f"pass: {passes}" in [label.get_text() for label in events.get_yticklabels()]
 
 
-def circles(axes: Axes) -> list[float]:
+def circles(axes):
     return [float(patch.radius) for patch in axes.patches if isinstance(patch, Circle)]
 
 
-def test_orbit_and_its_circles() -> None:
+def test_orbit_and_its_circles():
     pair, trace = turned("frame"), KINDS["frame"]().trace
     orbit, push, bar = drawn(history.orbit_figure, pair, "a title").axes
     assert bar.get_xlabel() == "time [s]"
@@ -134,7 +130,7 @@ def test_orbit_and_its_circles() -> None:
     )  # fmt: skip
 
 
-def test_the_moment_along_the_tilt_is_that_of_the_plane() -> None:
+def test_the_moment_along_the_tilt_is_that_of_the_plane():
     """Of a pair to one side: the driving moment away from upright, over the size of the tilt."""
     trace, axes = KINDS["rolls"]().trace, Figure().subplots()
     history.draw_moment(axes, turned())
@@ -151,13 +147,13 @@ def test_the_moment_along_the_tilt_is_that_of_the_plane() -> None:
     assert axes.get_xlim()[0] == 0.0
 
 
-def test_the_ground_beside_floors_is_the_resultant() -> None:
+def test_the_ground_beside_floors_is_the_resultant():
     axes, peak = Figure().subplots(), KINDS["rolls"]().record.pga
     draw_accelerations(axes, turned())
     assert curve(axes, f"PGA = {peak:.3g} m/s²")[0][0] == pytest.approx(peak)
 
 
-def test_panels_of_pairs_refuse_one_component() -> None:
+def test_panels_of_pairs_refuse_one_component():
     for panel in (figures.orbit, figures.azimuth):
         with pytest.raises(
             UsageError, match="needs a history under both horizontal components"
@@ -165,7 +161,7 @@ def test_panels_of_pairs_refuse_one_component() -> None:
             panel(Figure().subplots(), KINDS["frame"]())
 
 
-def test_film_from_the_side_and_from_above(tmp_path: Path) -> None:
+def test_film_from_the_side_and_from_above(tmp_path):
     pair, plane = turned(), KINDS["rolls"]().trace
     sample = int(np.argmax(np.abs(plane.rotation)))
     side, above = (Figure().subplots() for _ in range(2))

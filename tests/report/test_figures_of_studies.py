@@ -1,23 +1,15 @@
 """Figures of studies, against the CSV files of the same studies; others from numbers by hand."""
 
-from __future__ import annotations
-
-from collections.abc import Callable, Iterator, Sequence
-from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patches import StepPatch
-from numpy.typing import NDArray
 from paper_structures import needs_compiled_kernels
-from reproduction.conftest import Row, rows_of
+from reproduction.conftest import rows_of
 from sweep.small_studies import BASE, STUDY
 
 from report.small_results import curve, drawn, legend
@@ -34,10 +26,6 @@ from rpscli.tools.selection.candidates import Candidate
 from rpscli.tools.selection.figure import selection_figure
 from rpscli.tools.selection.requirements import RULES
 from rpscli.tools.selection.selection import Selection
-
-Array = NDArray[np.float64]
-Open = Callable[[str], tuple[Figure, list[Row]]]
-"""Of a report: its figure, and the rows of a CSV file of the same name."""
 
 RHO, ALPHA = "podium.bearing.curvature_ratio", "podium.bearing.slenderness"
 NAMES = {"critical": "critical ρ", "0.5": "ρ = 0.5", "0": "flat ends"}
@@ -94,13 +82,13 @@ reports:
 """
 
 
-def opened(text: str, folder: Path) -> Open:
+def opened(text, folder):
     """Run a study; figures are kept as objects, by their titles."""
     (folder / "base.yaml").write_text(BASE, encoding="utf-8")
     (folder / "study.yaml").write_text(text, encoding="utf-8")
-    kept: dict[str, Figure] = {}
+    kept = {}
 
-    def keep(figure: Figure, *_: object, **__: object) -> None:
+    def keep(figure, *_, **__):
         kept[figure.get_suptitle().splitlines()[0].split("   |   ")[0]] = figure
 
     with pytest.MonkeyPatch.context() as patch:
@@ -115,43 +103,43 @@ def opened(text: str, folder: Path) -> Open:
         made = CliRunner().invoke(program, command)
     assert made.exit_code == 0, made.stderr
 
-    def open_(name: str) -> tuple[Figure, list[Row]]:
+    def open_(name):
         return kept.get(name, Figure()), rows_of(folder / "made" / f"{name}.csv")
 
     return open_
 
 
 @pytest.fixture(scope="module")
-def histories(tmp_path_factory: pytest.TempPathFactory) -> Open:
+def histories(tmp_path_factory):
     return opened(HISTORIES, tmp_path_factory.mktemp("histories"))
 
 
-def numbers(of: Sequence[Row], name: str) -> Array:
+def numbers(of, name):
     """A column; empty cells are no numbers."""
     return np.array([float(row[name]) if row[name] else np.nan for row in of])
 
 
-def chosen(of: Sequence[Row], rho: str, alpha: str | None = None) -> list[Row]:
+def chosen(of, rho, alpha=None):
     """Rows of one curvature ratio, and of one slenderness."""
     return [
         row for row in of if row[RHO] == rho and (alpha is None or row[ALPHA] == alpha)
     ]
 
 
-def panels(figure: Figure) -> dict[str, Axes]:
+def panels(figure):
     """By their titles in one line."""
     return {
         axes.get_title().replace("\n", " "): axes for axes in figure.axes if axes.axison
     }
 
 
-def same(found: object, wanted: object) -> None:
+def same(found, wanted):
     """Require equal numbers, to the ten digits of a CSV file."""
     mine, other = (np.asarray(of, float) for of in (found, wanted))
     np.testing.assert_allclose(mine, other, rtol=1e-9, atol=1e-12)
 
 
-def labelled(figure: Figure, x_label: str, y_label: str) -> None:
+def labelled(figure, x_label, y_label):
     """Require one label for all ordinates, and the other below the last panels alone."""
     shown = [axes.get_xlabel().replace("\n", " ") for axes in panels(figure).values()]
     assert {*shown} - {""} == {x_label}
@@ -161,7 +149,7 @@ def labelled(figure: Figure, x_label: str, y_label: str) -> None:
     ) == y_label
 
 
-def markers(axes: Axes, *, hollow: bool) -> Iterator[Line2D]:
+def markers(axes, *, hollow):
     for line in axes.lines:
         filled = line.get_markerfacecolor() != "none"
         # Some lines have their markers in the legend only.
@@ -174,7 +162,7 @@ def markers(axes: Axes, *, hollow: bool) -> Iterator[Line2D]:
 
 
 @needs_compiled_kernels
-def test_the_table_of_overturning(histories: Open) -> None:
+def test_the_table_of_overturning(histories):
     figure, table = histories("overturning")
     (axes,) = figure.axes
     heads = [name for name in table[0] if "=" in name and ";" not in name]
@@ -206,7 +194,7 @@ def test_the_table_of_overturning(histories: Open) -> None:
 
 
 @needs_compiled_kernels
-def test_rotations_against_the_reference(histories: Open) -> None:
+def test_rotations_against_the_reference(histories):
     figure, table = histories("rotation")
     ratio = r"$|\theta_{max}|/\alpha$ [-]"
     labelled(figure, f"{ratio}, flat ends", f"{ratio}, the others")
@@ -231,7 +219,7 @@ def test_rotations_against_the_reference(histories: Open) -> None:
 
 
 @needs_compiled_kernels
-def test_base_shear_against_rotation(histories: Open) -> None:
+def test_base_shear_against_rotation(histories):
     figure, fits = histories("demand")
     _, points = histories("points")
     labelled(figure, r"$|\theta_{max}|/\theta_{cr}$ [-]", "$V_b/V_{st}$ [-]")
@@ -266,7 +254,7 @@ def test_base_shear_against_rotation(histories: Open) -> None:
 
 
 @needs_compiled_kernels
-def test_storey_shears_over_the_height(histories: Open) -> None:
+def test_storey_shears_over_the_height(histories):
     figure, table = histories("storey_shear")
     labelled(figure, "$V_i/V_{st}$ [-]", "level (0 = cap beam)")
     looks = {
@@ -291,7 +279,7 @@ def test_storey_shears_over_the_height(histories: Open) -> None:
 
 
 @needs_compiled_kernels
-def test_incremental_dynamic_analysis(histories: Open) -> None:
+def test_incremental_dynamic_analysis(histories):
     figure, table = histories("ida")
     _, points = histories("points")
     labelled(figure, r"$|\theta_{max}|/\theta_{cr}$ [-]", "scale [-]")
@@ -327,7 +315,7 @@ def test_incremental_dynamic_analysis(histories: Open) -> None:
 
 
 @needs_compiled_kernels
-def test_fragilities(histories: Open) -> None:
+def test_fragilities(histories):
     figure, fits = histories("fragility")
     _, table = histories("fragility_curves")
     _, points = histories("points")
@@ -381,7 +369,7 @@ def test_fragilities(histories: Open) -> None:
 
 
 @needs_compiled_kernels
-def test_the_spectrum_of_pulses(tmp_path: Path) -> None:
+def test_the_spectrum_of_pulses(tmp_path):
     figure, table = opened(PULSES, tmp_path)("overturning_spectrum")
     labelled(figure, r"$\omega/p$ [-]", r"$a_p/(g\,\tan\alpha)$ [-]")
     words = {"at rest": "at_rest", "survived": "survived", "overturned": "overturned"}
@@ -409,7 +397,7 @@ def test_the_spectrum_of_pulses(tmp_path: Path) -> None:
         same(curve(axes, "least that overturns"), (ratios, least))
 
 
-def test_modes_against_a_varied_key(tmp_path: Path) -> None:
+def test_modes_against_a_varied_key(tmp_path):
     figure, table = opened(MODES, tmp_path)("lines")
     labelled(figure, "n [-]", r"$\omega_u/\omega_0$ [-]")
     assert legend(figure) == ["rolling", "rocking"]
@@ -428,8 +416,8 @@ def test_modes_against_a_varied_key(tmp_path: Path) -> None:
             assert drawn.get_linestyle() == dashes
 
 
-def test_curves_of_lists(tmp_path: Path) -> None:
-    study: Any = opened(CURVES, tmp_path)
+def test_curves_of_lists(tmp_path):
+    study = opened(CURVES, tmp_path)
     figure, table = study("lines")
     labelled(figure, "$u_b$ [m]", "$F/W$ [-]")
     (axes,) = figure.axes
@@ -446,7 +434,7 @@ NO_SAMPLES = (np.empty(0), np.empty(0))
 SIZE = "podium.bearing.semi_diagonal"
 
 
-def has_edges(axes: Axes, place: int, x: object, *edges: object) -> None:
+def has_edges(axes, place, x, *edges):
     """Require that a filled band runs through the points of its edges."""
     bands = [found for found in axes.collections if isinstance(found, PolyCollection)]
     (path,) = bands[place].get_paths()
@@ -456,7 +444,7 @@ def has_edges(axes: Axes, place: int, x: object, *edges: object) -> None:
         assert np.abs(corners[:, None] - points).sum(axis=2).min(axis=0).max() < 1e-9
 
 
-def a_selection() -> Selection:
+def a_selection():
     """Two motions for a target, the second at the bound of its factor."""
     periods, wanted = np.array([0.1, 0.5, 2.0]), np.array([3.0, 6.0, 1.5]) / 1.01
     target = TargetSpectrum("EN 1998", "", lambda _: wanted, 0.5, 0.2, span=(0.1, 2.0))
@@ -472,7 +460,7 @@ def a_selection() -> Selection:
     )
 
 
-def test_a_selection_beside_its_target() -> None:
+def test_a_selection_beside_its_target():
     selection = a_selection()
     periods, wanted, mean = selection.periods, selection.wanted, selection.mean
     scaled = [(2.0, 4.0, 1.0), (4.0, 8.0, 2.0)]
@@ -499,23 +487,15 @@ def test_a_selection_beside_its_target() -> None:
 
 
 def answer_of(
-    keys: Sequence[str],
-    values: object,
-    passes: object,
-    aim: object,
-    *,
-    requirements: Sequence[Requirement] = (),
-    demands: Sequence[Any] = (),
-    valid: object = True,
-    linked: int = 0,
-) -> Answer:
+    keys, values, passes, aim, *, requirements=(), demands=(), valid=True, linked=0
+):
     """An answer of a search: designs by keys, whose last `linked` follow from the others.
 
     `passes` has a row for the records and one for each resample, `demands` such of requirements.
     """
     at, met = np.array(values), np.array(passes, dtype=bool)
     low, high = at.min(axis=0), at.max(axis=0)
-    task: Any = SimpleNamespace(
+    task = SimpleNamespace(
         keys=keys,
         unknowns=keys[: len(keys) - linked],
         file=SimpleNamespace(minimise={ALPHA: Term()}),
@@ -533,7 +513,7 @@ def answer_of(
     )
 
 
-def of_one_unknown() -> Answer:
+def of_one_unknown():
     """Three designs; the one at 0.2 fails in one of two resamples."""
     uplift = Requirement(Condition("uplift", 0.0, "limits", share=0.5), 0)
     shear = Requirement(Condition("max_base_shear", 2e6, "limits"), 0, "PGA", 3.0)
@@ -547,7 +527,7 @@ def of_one_unknown() -> Answer:
     )  # fmt: skip
 
 
-def test_requirements_along_one_unknown() -> None:
+def test_requirements_along_one_unknown():
     figure = drawn(requirements_figure, of_one_unknown(), "title")
     assert "2 of 3 designs pass" in figure.get_suptitle()
     order = (0.1, 0.2, 0.3)
@@ -577,7 +557,7 @@ def test_requirements_along_one_unknown() -> None:
     }  # fmt: skip
 
 
-def of_two_unknowns() -> Answer:
+def of_two_unknowns():
     """Five designs, of which one is no valid case, and a third key that is linked."""
     corners = [
         (x, y, 2.0 * x)
@@ -590,13 +570,13 @@ def of_two_unknowns() -> Answer:
     )  # fmt: skip
 
 
-def test_the_region_that_passes() -> None:
+def test_the_region_that_passes():
     figure = drawn(region_figure, of_two_unknowns(), "title")
     assert "2 of 5 designs pass" in figure.get_suptitle()
     axes, scale = figure.axes
     same(curve(axes, "best design"), ([0.3], [0.8]))
     # Shares stand where designs were computed, and nowhere else.
-    found: dict[Any, Any] = {each.get_label(): each for each in axes.collections}
+    found = {each.get_label(): each for each in axes.collections}
     assert {name: each.get_offsets().tolist() for name, each in found.items()} == {
         "no valid case": [[0.1, 2.0]],
         "fails": [[0.1, 0.8], [0.2, 1.2]],
@@ -611,7 +591,7 @@ def test_the_region_that_passes() -> None:
     assert legend(figure) == ["no valid case", "fails", "passes", "best design"]
 
 
-def test_spectra_of_the_lowest_floor_and_the_roof() -> None:
+def test_spectra_of_the_lowest_floor_and_the_roof():
     values = np.arange(1.0, 1.0 + 3 * 3 * len(PERIODS)).reshape(3, 3, -1)
     fallen = np.where(np.arange(3)[:, None, None] == 2, np.inf, values)
     states = np.array([fallen, values])

@@ -1,15 +1,13 @@
 """Files appear whole or not at all, and only where they may; CSV and JSON are what was computed."""
 
-from __future__ import annotations
-
 import csv
 import errno
 import io
 import json
 import math
-from collections.abc import Callable
+import os
+import tempfile
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -17,7 +15,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rpscli.analyses.result_quantities import plain
-from rpscli.errors import OutputError, Refused
+from rpscli.case.case import load_case
+from rpscli.errors import OutputError, Refused, RpsError
 from rpscli.report import table
 from rpscli.report.figures import floors, style
 from rpscli.report.files import Drawing, OutputFolder, Run, json_text, write_whole
@@ -26,15 +25,13 @@ from rpscli.report.study.report import add_notes, label, with_band
 from rpscli.report.table import Column, Table, csv_text, records
 
 
-def folder_of(
-    place: Path, digest: str = "a", *, force: bool = False, **inputs: object
-) -> OutputFolder:
+def folder_of(place, digest="a", *, force=False, **inputs):
     return OutputFolder(
         place, Run("modal", "x", place / "../x.yaml", digest, inputs), force=force
     )
 
 
-def test_run_json_says_what_was_run(tmp_path: Path) -> None:
+def test_run_json_says_what_was_run(tmp_path):
     folder = folder_of(tmp_path / "out", scale=2.0)
     folder.add("a.csv", "1\n")
     folder.write()
@@ -45,7 +42,7 @@ def test_run_json_says_what_was_run(tmp_path: Path) -> None:
     assert set(run["versions"]) == {"rps", "python", "numpy", "llvmlite"}
 
 
-def test_files_of_an_earlier_run_that_are_no_longer_made_go_away(tmp_path: Path) -> None:
+def test_files_of_an_earlier_run_that_are_no_longer_made_go_away(tmp_path):
     first = folder_of(tmp_path)
     for name in ("a.csv", "b.csv"):
         first.add(name, name)
@@ -62,20 +59,18 @@ def test_files_of_an_earlier_run_that_are_no_longer_made_go_away(tmp_path: Path)
     assert second.removed == ["b.csv"]
 
 
-def test_results_are_written_before_anything_is_drawn(tmp_path: Path) -> None:
+def test_results_are_written_before_anything_is_drawn(tmp_path):
     """A figure that fails is told, the others are drawn, and the next run draws it."""
-    seen: list[str] = []
+    seen = []
 
-    def draws() -> bytes:
+    def draws():
         seen.extend(sorted(file.name for file in tmp_path.iterdir()))
         return b"PNG"
 
-    def fails() -> bytes:
+    def fails():
         raise RuntimeError("no figure")
 
-    def written(
-        first: Callable[[], bytes], then: Callable[[], bytes] = draws
-    ) -> OutputFolder:
+    def written(first, then=draws):
         folder = folder_of(tmp_path)
         for name, draw in {"first.png": first, "second.png": then}.items():
             folder.add(name, Drawing(name, draw))
@@ -100,7 +95,7 @@ def test_results_are_written_before_anything_is_drawn(tmp_path: Path) -> None:
     )
 
 
-def test_nothing_outside_the_folder_is_taken_away(tmp_path: Path) -> None:
+def test_nothing_outside_the_folder_is_taken_away(tmp_path):
     film = tmp_path / "film.gif"
     first = folder_of(tmp_path / "out")
     first.add_at(film, b"GIF")
@@ -114,7 +109,7 @@ def test_nothing_outside_the_folder_is_taken_away(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("text", ["", "[]", "{}", "null", '{"command": 1}', "\0"])
-def test_a_strange_run_json_is_refused(tmp_path: Path, text: str) -> None:
+def test_a_strange_run_json_is_refused(tmp_path, text):
     (tmp_path / "run.json").write_text(text, encoding="utf-8")
     with pytest.raises(Refused, match=r"run\.json is not a description"):
         folder_of(tmp_path)
@@ -122,7 +117,7 @@ def test_a_strange_run_json_is_refused(tmp_path: Path, text: str) -> None:
     assert not folder_of(tmp_path).replaces_other_inputs
 
 
-def test_other_inputs_are_noticed(tmp_path: Path) -> None:
+def test_other_inputs_are_noticed(tmp_path):
     assert not folder_of(tmp_path).replaces_other_inputs
     folder_of(tmp_path, "a", scale=1.0).write()
     assert not folder_of(tmp_path, "a", scale=1.0).replaces_other_inputs
@@ -131,12 +126,12 @@ def test_other_inputs_are_noticed(tmp_path: Path) -> None:
 
 
 def test_a_full_disk_or_an_interruption_leaves_everything_as_it_was(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    tmp_path, monkeypatch
+):
     write_whole({tmp_path / "a": b"old"})
     write = Path.write_bytes
 
-    def stopped(path: Path, data: bytes) -> int:
+    def stopped(path, data):
         if data == b"interrupted":
             raise KeyboardInterrupt
         if data == b"too much":
@@ -155,18 +150,45 @@ def test_a_full_disk_or_an_interruption_leaves_everything_as_it_was(
     assert (tmp_path / "a").read_bytes() == b"old"
 
 
-def test_a_folder_in_the_way(tmp_path: Path) -> None:
+def test_a_folder_in_the_way(tmp_path):
     (tmp_path / "a").mkdir()
     with pytest.raises(OutputError, match="there is a folder of this name"):
         write_whole({tmp_path / "a": b"new"})
 
 
-def test_a_folder_without_permission(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_folder_without_permission(tmp_path, monkeypatch):
     monkeypatch.setattr("rpscli.report.files.os.access", lambda *_: False)
     with pytest.raises(OutputError, match="no permission"):
         folder_of(tmp_path / "out")
+
+
+@pytest.mark.posix
+def test_what_the_system_forbids_is_told():
+    """As somebody else than root, whom nothing is forbidden: in a process of its own."""
+    with tempfile.TemporaryDirectory() as name:
+        place = Path(name)
+        (place / "case.yaml").write_text("rps: 1\n", encoding="utf-8")
+        (place / "case.yaml").chmod(0)
+        place.chmod(0o555)
+        child = os.fork()
+        if not child:
+            told = 0
+            try:
+                if not os.getuid():
+                    os.setuid(65534)
+                for ask, said in (
+                    (lambda: folder_of(place / "out"), "no permission"),
+                    (lambda: load_case(place / "case.yaml"), "Permission denied"),
+                ):
+                    try:
+                        ask()
+                    except RpsError as error:
+                        told += said in str(error)
+            finally:
+                os._exit(told)
+        _, status = os.waitpid(child, 0)
+        place.chmod(0o700)
+    assert os.waitstatus_to_exitcode(status) == 2
 
 
 values = st.recursive(
@@ -178,11 +200,11 @@ values = st.recursive(
 
 
 @given(st.dictionaries(st.text(), values, max_size=4))
-def test_json_is_read_back_as_it_was(document: dict[str, object]) -> None:
+def test_json_is_read_back_as_it_was(document):
     assert json.loads(json_text(document)) == document
 
 
-def test_json_knows_no_nan_and_no_numpy() -> None:
+def test_json_knows_no_nan_and_no_numpy():
     document = {
         "a": np.array([1.0, math.nan, -math.inf]),
         "b": np.float64(2.5),
@@ -201,12 +223,12 @@ def test_json_knows_no_nan_and_no_numpy() -> None:
     assert "-0.0" not in json_text(document)
 
 
-def test_lists_of_numbers_stay_on_one_line() -> None:
+def test_lists_of_numbers_stay_on_one_line():
     assert json_text({"a": [1, 2, 3]}) == '{\n  "a": [1, 2, 3]\n}\n'
 
 
 @given(st.lists(st.floats(-1e300, 1e300), min_size=1))
-def test_a_csv_holds_ten_digits(numbers: list[float]) -> None:
+def test_a_csv_holds_ten_digits(numbers):
     lines = csv_text([Column("x", "m", np.array(numbers))]).splitlines()
     assert lines[0] == "x [m]"
     assert [float(line) for line in lines[1:]] == pytest.approx(
@@ -214,7 +236,7 @@ def test_a_csv_holds_ten_digits(numbers: list[float]) -> None:
     )
 
 
-def test_what_does_not_exist_is_an_empty_cell() -> None:
+def test_what_does_not_exist_is_an_empty_cell():
     columns = [
         Column("x", "m", [1.0, math.nan, None]),
         Column("kind", "-", ["a", "b", "c"]),
@@ -222,7 +244,7 @@ def test_what_does_not_exist_is_an_empty_cell() -> None:
     assert csv_text(columns) == "x [m],kind [-]\n1,a\n,b\n,c\n"
 
 
-def test_columns_of_different_lengths_are_a_mistake() -> None:
+def test_columns_of_different_lengths_are_a_mistake():
     with pytest.raises(ValueError, match="zip"):
         csv_text([Column("x", "m", [1.0]), Column("y", "m", [1.0, 2.0])])
 
@@ -231,18 +253,18 @@ texts = st.text(st.characters(codec="utf-8", exclude_characters="\0"))
 
 
 @given(st.lists(texts, min_size=1), texts)
-def test_a_cell_may_hold_anything(cells: list[str], head: str) -> None:
+def test_a_cell_may_hold_anything(cells, head):
     text = csv_text([Column(head, "-", cells), Column("x", "m", range(len(cells)))])
     rows = [[f"{head} [-]", "x [m]"], *([cell, str(i)] for i, cell in enumerate(cells))]
     assert list(csv.reader(io.StringIO(text, newline=""))) == rows
 
 
-def test_lists_and_mappings_are_written_as_json() -> None:
+def test_lists_and_mappings_are_written_as_json():
     lists = Column("a", "-", [[1, 2], {"b": None}])
     assert csv_text([lists]) == 'a [-]\n"[1, 2]"\n"{""b"": null}"\n'
 
 
-def test_a_table_has_one_row_for_readers_files_and_documents() -> None:
+def test_a_table_has_one_row_for_readers_files_and_documents():
     shear = Column("max_base_shear", "N", [1.5e6, None], "base shear kN")
     columns = [Column("record", "-", ["El Centro, 1940.at2", "b"], "record", str), shear]
     assert Table(columns).heads == ["record", "base shear kN"]
@@ -251,7 +273,7 @@ def test_a_table_has_one_row_for_readers_files_and_documents() -> None:
     assert records(columns)[1] == {"record": "b", "max_base_shear": None}
 
 
-EXAMPLES: dict[str, list[tuple[Any, Any]]] = {
+EXAMPLES = {
     "figures": [
         (floors.shown_floors(6), [1, 4, 6]),
         (
@@ -284,12 +306,12 @@ EXAMPLES: dict[str, list[tuple[Any, Any]]] = {
 
 
 @pytest.mark.parametrize("of", EXAMPLES)
-def test_examples(of: str) -> None:
+def test_examples(of):
     for found, wanted in EXAMPLES[of]:
         assert found == wanted
 
 
-def test_notes_of_several_reports_are_said_once() -> None:
+def test_notes_of_several_reports_are_said_once():
     notes = ["fragility: the data are separated"]
     add_notes(notes, "risk", ["the data are separated", "the hazard curve is continued"])
     assert notes == [

@@ -1,11 +1,8 @@
 """A page holds together: text stays text, names are used once, and nothing is fetched."""
 
-from __future__ import annotations
-
 import io
 import re
 from collections import Counter
-from collections.abc import Iterator
 from functools import partial
 from html.parser import HTMLParser
 
@@ -24,7 +21,6 @@ from rpscli.report.figures.look import USUAL
 from rpscli.report.files import Drawing, undrawn
 from rpscli.report.page import (
     MOST_BYTES,
-    Block,
     Code,
     Notice,
     Picture,
@@ -43,31 +39,31 @@ HOSTILE = """<script>alert("x")</script> & 'quotes' "too" </style></title> \x00 
 class Parsed(HTMLParser):
     """Tags with their attributes, and the text between them."""
 
-    def __init__(self, content: bytes) -> None:
+    def __init__(self, content):
         super().__init__()
-        self.tags: list[tuple[str, dict[str, str]]] = []
-        self.texts: list[str] = []
+        self.tags = []
+        self.texts = []
         self.feed(content.decode())
 
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+    def handle_starttag(self, tag, attrs):
         self.tags.append((tag, {name: value or "" for name, value in attrs}))
 
-    def handle_data(self, data: str) -> None:
+    def handle_data(self, data):
         self.texts.append(data)
 
-    def all(self, attribute: str) -> Iterator[str]:
+    def all(self, attribute):
         return (of[attribute] for _, of in self.tags if attribute in of)
 
 
 @pytest.fixture(scope="module")
-def figures_of_history() -> list[Block]:
+def figures_of_history():
     files = timehistory_files(KINDS["rolls"](), HOSTILE, page_look(USUAL))
     return [
         Picture(found, f"{stem} {HOSTILE}") for stem, found in pictures(files).items()
     ]
 
 
-def picture(svg: bytes, caption: str, png: bytes = b"") -> Picture:
+def picture(svg, caption, png=b""):
     """A figure of a page whose files are known."""
     files = {"svg": lambda: svg, "png": lambda: png}
     return Picture(
@@ -75,8 +71,8 @@ def picture(svg: bytes, caption: str, png: bytes = b"") -> Picture:
     )
 
 
-def test_a_figure_that_fails_is_told_in_its_place() -> None:
-    def fails() -> bytes:
+def test_a_figure_that_fails_is_told_in_its_place():
+    def fails():
         raise RuntimeError("no <figure>")
 
     broken = Picture({"svg": Drawing("x.svg", fails)}, "a caption")
@@ -86,8 +82,8 @@ def test_a_figure_that_fails_is_told_in_its_place() -> None:
     assert len(undrawn(broken.files.values())) == 1
 
 
-def test_text_is_never_taken_for_tags() -> None:
-    blocks: list[Block] = [
+def test_text_is_never_taken_for_tags():
+    blocks = [
         HOSTILE,
         Notice(HOSTILE),
         Code(HOSTILE),
@@ -105,9 +101,7 @@ def test_text_is_never_taken_for_tags() -> None:
         assert HOSTILE.replace("\x00", "\ufffd") in text
 
 
-def test_names_are_used_once_and_nothing_is_fetched(
-    figures_of_history: list[Block],
-) -> None:
+def test_names_are_used_once_and_nothing_is_fetched(figures_of_history):
     # The same drawings twice: matplotlib gives them the same names.
     content = page(
         "a", "b", [Section("c", [*figures_of_history, *figures_of_history])], "d"
@@ -136,7 +130,7 @@ def test_names_are_used_once_and_nothing_is_fetched(
     assert not any("width" in of or "height" in of for of in drawn)
 
 
-def test_a_figure_of_many_points_is_an_image_and_the_page_stays_small() -> None:
+def test_a_figure_of_many_points_is_an_image_and_the_page_stays_small():
     marks = b"".join(b'<circle r="1" cx="%d" cy="2"/>' % n for n in range(30_000))
     start = b'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9">'
     with io.BytesIO() as file:
@@ -150,7 +144,7 @@ def test_a_figure_of_many_points_is_an_image_and_the_page_stays_small() -> None:
     assert len(content) < MOST_BYTES
 
 
-def test_coordinates_are_rounded_and_factors_are_not() -> None:
+def test_coordinates_are_rounded_and_factors_are_not():
     drawing = (
         b'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9">'
         b'<path d="M 1.23456 -0.00049" transform="scale(0.015625)"/></svg>'
@@ -160,20 +154,20 @@ def test_coordinates_are_rounded_and_factors_are_not() -> None:
     assert b"scale(0.015625)" in content
 
 
-def test_a_page_knows_what_it_is_about() -> None:
+def test_a_page_knows_what_it_is_about():
     made = partial(page, "a title", "b", [Section("c", ["d"])])
     assert is_about(made('six "storeys" & <more>'), 'six "storeys" & <more>')
     assert not is_about(made("six"), "six_storeys")
     assert not is_about(b"notes of mine about six", "six")
 
 
-def test_empty_sections_are_left_out_and_the_others_numbered() -> None:
+def test_empty_sections_are_left_out_and_the_others_numbered():
     parsed = Parsed(page("a", "b", [Section("none", []), Section("some", ["text"])], "c"))
     assert "none" not in parsed.texts
     assert "1  some" in parsed.texts
 
 
-def test_what_the_model_leaves_out_is_read_from_the_theory() -> None:
+def test_what_the_model_leaves_out_is_read_from_the_theory():
     table, both = hidden_table(both=False), hidden_table(both=True)
     assert isinstance(table, Table)
     assert any(row[0] == "plane motion" for row in table.rows)
@@ -185,7 +179,7 @@ def test_what_the_model_leaves_out_is_read_from_the_theory() -> None:
     assert any("friction_demand" in row[1] for row in table.rows)
 
 
-def test_every_derived_number_has_a_row() -> None:
+def test_every_derived_number_has_a_row():
     made = structure()
     podium = {"bearing": {"semi_diagonal": 1.5}, "cap_beam_mass": 2e5, "column_mass": 2e4}
     table = derived_blocks(made, podium)[-1]
@@ -196,18 +190,16 @@ def test_every_derived_number_has_a_row() -> None:
 
 
 @pytest.mark.long
-def test_a_long_record_leaves_the_page_small_enough_to_be_sent() -> None:
+def test_a_long_record_leaves_the_page_small_enough_to_be_sent():
     record = "synthetic:?pga=0.5g&duration=300&dt=0.005&seed=3"
     result = history(structure(storeys=6), record)
     files = timehistory_files(result, "a long record", page_look(USUAL))
-    blocks: list[Block] = [
-        Picture(found, stem) for stem, found in pictures(files).items()
-    ]
+    blocks = [Picture(found, stem) for stem, found in pictures(files).items()]
     blocks.append(motion_pictures(result.record, USUAL))
     assert (
         len(page("a", "b", [Section("c", blocks)], "d")) < 0.9 * MOST_BYTES
     )  # tables: a tenth
 
 
-def test_spaces_of_drawings_are_no_control_characters() -> None:
+def test_spaces_of_drawings_are_no_control_characters():
     assert printable("0.1\u2009m\u00a0x\x07") == "0.1\u2009m\u00a0x\ufffd"

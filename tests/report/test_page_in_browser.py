@@ -1,15 +1,11 @@
 """Pages in a real browser: nothing wider than a telephone, nothing cut on paper."""
 
-from __future__ import annotations
-
 import html
 import json
 import re
 import shutil
 import subprocess
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 from click.testing import CliRunner
@@ -58,7 +54,7 @@ document.title = JSON.stringify(found);
 """
 
 
-def browse(profile: Path, *options: str) -> str:
+def browse(profile, *options):
     assert BROWSER is not None
     quiet = [
         "--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-sync",
@@ -76,9 +72,7 @@ def browse(profile: Path, *options: str) -> str:
 
 
 @pytest.fixture(scope="module", params=["case", "study"])
-def made(
-    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
-) -> Path:
+def made(request, tmp_path_factory):
     """The page of a case, and that of a study."""
     place = tmp_path_factory.mktemp("pages")
     case = ROOT / "cases" / "measured_column.yaml"
@@ -93,11 +87,11 @@ def made(
 
 
 @pytest.fixture
-def measured(made: Path, tmp_path: Path) -> Callable[[int], dict[str, Any]]:
+def measured(made, tmp_path):
     """Sizes on a window of so many pixels; the page's own policy lets no script in, so it stands in
     a frame."""
 
-    def measure(width: int) -> dict[str, Any]:
+    def measure(width):
         text = html.escape(made.read_text(encoding="utf-8"))
         frame = f'<iframe srcdoc="{text}" style="width:{width}px;height:900px;border:0"></iframe>'
         outside = tmp_path / "outside.html"
@@ -112,9 +106,7 @@ def measured(made: Path, tmp_path: Path) -> Callable[[int], dict[str, Any]]:
 
 
 @pytest.mark.parametrize("width", [TELEPHONE, SCREEN])
-def test_only_tables_and_figures_scroll_sideways(
-    measured: Callable[[int], dict[str, Any]], width: int
-) -> None:
+def test_only_tables_and_figures_scroll_sideways(measured, width):
     found = measured(width)
     assert found["page"] <= width
     assert found["figures"]
@@ -127,9 +119,7 @@ def test_only_tables_and_figures_scroll_sideways(
     assert not [name for name in found["loaded"] if not name.startswith("data:")]
 
 
-def test_paper_is_a4_and_takes_every_figure_whole(
-    made: Path, measured: Callable[[int], dict[str, Any]], tmp_path: Path
-) -> None:
+def test_paper_is_a4_and_takes_every_figure_whole(made, measured, tmp_path):
     # A figure that is lower than the page is never cut: the style sheet forbids it.
     assert "figure, pre, .notice { break-inside: avoid; }" in made.read_text(
         encoding="utf-8"

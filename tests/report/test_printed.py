@@ -1,15 +1,11 @@
 """Pictures that one prints: no text over another or off the canvas, legends beside the data."""
 
-from __future__ import annotations
-
 import warnings
-from collections.abc import Iterator
 from contextlib import nullcontext
 from dataclasses import replace
 from functools import cache, partial
 from itertools import combinations
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -53,7 +49,7 @@ PULSE = "pulse:half_sine?amplitude=0.3g&period=0.6"
 RECORDS = [f"pulse:sine?amplitude=0.4g&period={period}" for period in (0.5, 2.0)]
 HAZARD = "PGV [cm/s],rate [1/year]\n2,0.2\n10,0.03\n50,0.001\n200,0.00001\n"
 LIMITS = {"rotation_ratio": [0.25, 0.5]}
-REPORTS: list[Any] = [
+REPORTS = [
     "overturning",
     "rotation",
     {"demand": {"panels": ["scale"], "series": ["title"]}},
@@ -69,12 +65,12 @@ REPORTS: list[Any] = [
 ]
 
 
-def texts_of(figure: Figure) -> list[Text]:
+def texts_of(figure):
     """Those that are drawn."""
-    seen: list[Text] = []
+    seen = []
     draw = Text.draw
 
-    def watch(text: Text, renderer: Any) -> None:
+    def watch(text, renderer):
         if text.get_visible() and text.get_text().strip():
             seen.append(text)
         draw(text, renderer)
@@ -85,9 +81,9 @@ def texts_of(figure: Figure) -> list[Text]:
     return list(dict.fromkeys(seen))
 
 
-def faults(figure: Figure) -> Iterator[str]:
+def faults(figure):
     """What a reader would complain about."""
-    canvas: Any = FigureCanvasAgg(figure)
+    canvas = FigureCanvasAgg(figure)
     texts, point = texts_of(figure), figure.dpi / 72.0
     renderer, frame = canvas.get_renderer(), figure.bbox.padded(point)
     boxes = [(text.get_text(), text.get_window_extent(renderer)) for text in texts]
@@ -106,10 +102,10 @@ def faults(figure: Figure) -> Iterator[str]:
     yield from of_panels(figure, renderer)
 
 
-def of_panels(figure: Figure, renderer: Any) -> Iterator[str]:
+def of_panels(figure, renderer):
     """Legends over panels, and panels without room."""
     point = figure.dpi / 72.0
-    found: list[Any] = [*figure.findobj(Axes), *figure.findobj(Legend)]
+    found = [*figure.findobj(Axes), *figure.findobj(Legend)]
     boxes = [(each, each.get_window_extent(renderer)) for each in found]
     panels = [
         (each, box) for each, box in boxes if isinstance(each, Axes) and each.axison
@@ -123,7 +119,7 @@ def of_panels(figure: Figure, renderer: Any) -> Iterator[str]:
             yield f"no room is left for {axes.get_title() or axes.get_xlabel()!r}"
 
 
-def shared(one: Any, other: Any, least: float) -> bool:
+def shared(one, other, least):
     """True if boxes have an area in common."""
     across, upwards = (
         min(getattr(one, f"{end}1"), getattr(other, f"{end}1"))
@@ -133,7 +129,7 @@ def shared(one: Any, other: Any, least: float) -> bool:
     return bool(across > least and upwards > 1.5 * least)
 
 
-def printed(draw: style.Draw, columns: int) -> list[str]:
+def printed(draw, columns):
     look = Look(columns=columns)
     with style.in_style(look):
         return [*faults(style.drawn(draw, look))]
@@ -141,16 +137,14 @@ def printed(draw: style.Draw, columns: int) -> list[str]:
 
 @pytest.mark.long
 @pytest.mark.parametrize("columns", [1, 2])
-def test_figures_of_analyses_can_be_read(
-    columns: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_figures_of_analyses_can_be_read(columns, monkeypatch):
     devices = ViscousDamper(2e5), Stop(0.02, 4e6), Tendon(2e4, 1e6), FrictionDamper(1e5)
     made, look = replace(structure(CURVED, 6), devices=devices), Look(columns=columns)
     result = history(made, PULSE)
     storeys = [
         Floors((NAME.format(n),), np.ones((3, 2, 2, 6, len(PERIODS)))) for n in range(9)
     ]
-    draw: dict[str, style.Draw] = {
+    draw = {
         "structure": style.single(draw_structure, made, (TITLE,), 4.4, 5.0),
         "selection": partial(selection_figure, a_selection(), TITLE),
         "requirements": partial(requirements_figure, of_one_unknown(), TITLE),
@@ -188,7 +182,7 @@ def test_figures_of_analyses_can_be_read(
 
 
 @pytest.mark.parametrize("of_rps", [False, True])
-def test_panels_fit_into_a_grid(*, of_rps: bool) -> None:
+def test_panels_fit_into_a_grid(*, of_rps):
     names = ["rotation", "energy", "moment_rotation", "storey_curve", *PANELS]
     found = []
     for first in range(0, len(names), 4):
@@ -201,7 +195,7 @@ def test_panels_fit_into_a_grid(*, of_rps: bool) -> None:
 @pytest.mark.parametrize(
     "name", ["rotation", "displacements", "moment_rotation", "storey_curve"]
 )
-def test_legends_stay_in_axes_that_nothing_makes_room_around(name: str) -> None:
+def test_legends_stay_in_axes_that_nothing_makes_room_around(name):
     figure = Figure()
     above, below = figure.subplots(2, 1)
     panel(name, below)
@@ -212,7 +206,7 @@ def test_legends_stay_in_axes_that_nothing_makes_room_around(name: str) -> None:
     assert above.get_legend() is None
 
 
-def in_grid(names: list[str]) -> list[str]:
+def in_grid(names):
     figure = Figure(figsize=(7.0, 5.0), layout="constrained")
     for axes, name in zip(figure.subplots(2, 2).flat, names, strict=False):
         panel(name, axes)
@@ -220,7 +214,7 @@ def in_grid(names: list[str]) -> list[str]:
 
 
 @cache
-def eighteen(folder: Path) -> rpscli.StudyResult:
+def eighteen(folder):
     (folder / "hazard.csv").write_text(HAZARD, encoding="utf-8")
     places = enumerate((source, scale) for source in RECORDS for scale in (0.3, 1.0))
     rows = [f"{source},{scale},1,{0.01 * 2.0**n}\n" for n, (source, scale) in places]
@@ -238,9 +232,7 @@ def eighteen(folder: Path) -> rpscli.StudyResult:
 
 
 @pytest.fixture
-def result(
-    tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
-) -> Any:
+def result(tmp_path_factory, monkeypatch):
     place = tmp_path_factory.getbasetemp() / "eighteen"
     place.mkdir(exist_ok=True)
     monkeypatch.chdir(place)
@@ -250,7 +242,7 @@ def result(
 @pytest.mark.long
 @needs_compiled_kernels
 @pytest.mark.parametrize("columns", [1, 2])
-def test_reports_can_be_read(result: rpscli.StudyResult, columns: int) -> None:
+def test_reports_can_be_read(result, columns):
     assert {*result.study.reports} == {*REPORT_NAMES}
     for name in REPORT_NAMES:
         figure = result.report(name).figure
@@ -265,7 +257,7 @@ REPORT_NAMES = [next(iter(each)) if isinstance(each, dict) else each for each in
 @pytest.mark.parametrize(
     "first", [8, *(pytest.param(first, marks=pytest.mark.long) for first in (0, 4))]
 )
-def test_reports_fit_into_a_grid(result: rpscli.StudyResult, first: int) -> None:
+def test_reports_fit_into_a_grid(result, first):
     figure = Figure(figsize=(7.0, 5.0), layout="constrained")
     for axes, name in zip(figure.subplots(2, 2).flat, REPORT_NAMES[first:], strict=False):
         result.draw(name, axes)
@@ -275,7 +267,7 @@ def test_reports_fit_into_a_grid(result: rpscli.StudyResult, first: int) -> None
 
 
 @pytest.mark.parametrize("columns", [1, 2])
-def test_a_budget_can_be_read(columns: int) -> None:
+def test_a_budget_can_be_read(columns):
     """Labels are whole, whatever changes."""
     case, values = rpscli.load_case(SIX), {quantity.name: 1.0 for quantity in LIMITED}
     change = "superstructure.damping.ratio 0.03 in place of 0.05, and of all that follows from it"

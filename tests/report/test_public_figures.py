@@ -1,20 +1,15 @@
 """`rpscli.figures`: panels in somebody else's axes."""
 
-from __future__ import annotations
-
 import math
 import re
 import subprocess
 import sys
-from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
-from typing import Any
 
 import matplotlib as mpl
 import numpy as np
 import pytest
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from paper_structures import podium
 
@@ -23,7 +18,6 @@ from rpscli import figures
 from rpscli.analyses.floor_spectra import fixed_base_floor_spectra, isolated_floor_spectra
 from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
-from rpscli.analyses.results import TimeHistoryResult
 from rpscli.errors import UsageError
 from rpscli.model.devices import ViscousDamper
 from rpscli.records.measures import response_spectrum
@@ -32,21 +26,21 @@ MADE = replace(structure(CURVED, 3), devices=(ViscousDamper(2e5),))
 
 
 @cache
-def result() -> TimeHistoryResult:
+def result():
     return history(MADE, "pulse:half_sine?amplitude=0.3g&period=0.6")
 
 
-def spectrum_of_record() -> Any:
+def spectrum_of_record():
     return response_spectrum(result().record, np.linspace(0.1, 2.0, 20))
 
 
 @cache
-def both() -> TimeHistoryResult:
+def both():
     return turned()
 
 
 TIME = "time [s]"
-PANELS: dict[str, tuple[Callable[[], tuple[Any, ...]], str, str]] = {
+PANELS = {
     "ground_acceleration": (lambda: (result(),), TIME, "ground\nacceleration [m/s²]"),
     "rotation": (lambda: (result(),), TIME, "rotation $\\theta$ [rad]"),
     "azimuth": (lambda: (both(),), TIME, "azimuth\n$\\varphi$ [deg]"),
@@ -111,18 +105,18 @@ PANELS: dict[str, tuple[Callable[[], tuple[Any, ...]], str, str]] = {
 }
 
 
-def test_every_panel_is_tried_and_named() -> None:
+def test_every_panel_is_tried_and_named():
     assert {*PANELS, "style"} == set(figures.__all__)
     assert set(figures.__all__) <= set(re.findall(r"`(\w+)`", figures.__doc__ or ""))
 
 
-def panel(name: str, axes: Axes) -> None:
+def panel(name, axes):
     arguments, _, _ = PANELS[name]
     getattr(figures, name)(axes, *arguments())
 
 
 @pytest.mark.parametrize("name", PANELS)
-def test_a_panel_is_drawn_with_labels_and_units(name: str) -> None:
+def test_a_panel_is_drawn_with_labels_and_units(name):
     figure = Figure()
     left, right = figure.subplots(1, 2)
     panel(name, right)
@@ -139,7 +133,7 @@ def test_a_panel_is_drawn_with_labels_and_units(name: str) -> None:
     assert not parts[0].axes
 
 
-def test_fonts_are_the_users_and_style_is_ours() -> None:
+def test_fonts_are_the_users_and_style_is_ours():
     with mpl.rc_context({"axes.labelsize": 17.0}):
         axes = Figure().subplots()
         figures.rotation(axes, result())
@@ -150,7 +144,7 @@ def test_fonts_are_the_users_and_style_is_ours() -> None:
         assert mpl.rcParams["axes.labelsize"] == 17.0
 
 
-def test_the_module_does_not_load_matplotlib() -> None:
+def test_the_module_does_not_load_matplotlib():
     code = (
         "import sys, rpscli; rpscli.figures.rotation; print('matplotlib' in sys.modules)"
     )
@@ -160,9 +154,9 @@ def test_the_module_does_not_load_matplotlib() -> None:
     assert done.stdout == "False\n"
 
 
-def test_legends_may_be_left_out_and_names_are_hinted_at() -> None:
+def test_legends_may_be_left_out_and_names_are_hinted_at():
     axes, energy = Figure().subplots(), PANELS["energy"][0]()
-    draw: Callable[..., None] = figures.energy
+    draw = figures.energy
     draw(axes, *energy, legend=False)
     assert axes.get_legend() is None
     assert axes.get_legend_handles_labels()[1]  # for one's own
@@ -172,15 +166,15 @@ def test_legends_may_be_left_out_and_names_are_hinted_at() -> None:
             getattr(figures, name)
 
 
-def test_other_axes_and_other_results_are_refused() -> None:
+def test_other_axes_and_other_results_are_refused():
     for axes in (None, 3, Figure()):
         with pytest.raises(UsageError, match="needs Axes of matplotlib"):
-            figures.rotation(axes, result())  # type: ignore[arg-type]
+            figures.rotation(axes, result())
     for drawn in (None, result().structure):
         with pytest.raises(
             UsageError, match="rotation: needs TimeHistoryResult of rpscli"
         ):
-            figures.rotation(Figure().subplots(), drawn)  # type: ignore[arg-type]
+            figures.rotation(Figure().subplots(), drawn)
 
 
 @pytest.mark.parametrize(
@@ -197,15 +191,13 @@ def test_other_axes_and_other_results_are_refused() -> None:
         ("bearing", (10.0,), "must be less than a quarter turn"),
     ],
 )
-def test_panels_that_are_not_there(
-    name: str, other: tuple[object, ...], said: str
-) -> None:
+def test_panels_that_are_not_there(name, other, said):
     drawn = PANELS[name][0]()[0]
     with pytest.raises(UsageError, match=said):
         getattr(figures, name)(Figure().subplots(), drawn, *other)
 
 
-def test_nothing_to_draw_is_told() -> None:
+def test_nothing_to_draw_is_told():
     single = pushover(podium(0))
     with pytest.raises(UsageError, match="has no capacity curve"):
         figures.capacity(Figure().subplots(), single)

@@ -1,12 +1,9 @@
 """Studies from Python: the same numbers and files as those of `rps sweep`."""
 
-from __future__ import annotations
-
 import json
 import runpy
 from pathlib import Path
 from shutil import rmtree
-from typing import Any
 
 import numpy as np
 import pytest
@@ -20,7 +17,7 @@ from rpscli.sweep.store import Store
 ROOT = Path(__file__).parents[2]
 LARGEST = "largest"
 
-SMALL: dict[str, Any] = {
+SMALL = {
     "rps": 1,
     "title": "A small study",
     "base": str(ROOT / "cases" / "six_storey.yaml"),
@@ -46,15 +43,15 @@ SMALL: dict[str, Any] = {
 
 
 @pytest.fixture(scope="module")
-def result() -> rpscli.StudyResult:
+def result():
     return rpscli.load_study(SMALL).run(jobs=1)
 
 
-def points(study: rpscli.Study) -> list[object]:
+def points(study):
     return [(p.values, p.record and p.record.source, p.scale) for p in study.layout]
 
 
-def test_a_mapping_and_a_file_say_the_same(tmp_path: Path) -> None:
+def test_a_mapping_and_a_file_say_the_same(tmp_path):
     file = tmp_path / "small.yaml"
     file.write_text(json.dumps(SMALL), encoding="utf-8")
     one, other = rpscli.load_study(SMALL), rpscli.load_study(file)
@@ -79,12 +76,12 @@ def test_a_mapping_and_a_file_say_the_same(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_what_is_wrong_is_told(change: dict[str, Any], says: str) -> None:
+def test_what_is_wrong_is_told(change, says):
     with pytest.raises(rpscli.RpsError, match=says.replace("?", r"\?")):
         rpscli.load_study(SMALL | change)
 
 
-def test_what_a_report_draws_is_its_result() -> None:
+def test_what_a_report_draws_is_its_result():
     """The words of before are understood: `demand` of `ida`, and `y` of `lines`."""
     words = {"ida": ("demand", {}), "lines": ("y", {"x": "scale"})}
     for kind, (before, others) in words.items():
@@ -95,11 +92,11 @@ def test_what_a_report_draws_is_its_result() -> None:
                 "reports": reports,
             }
             (request,) = rpscli.load_study(SMALL | change).reports.values()
-            options: Any = request.options
+            options = request.options
             assert "max_base_shear" in options.result
 
 
-def test_columns_are_those_of_the_points(result: rpscli.StudyResult) -> None:
+def test_columns_are_those_of_the_points(result):
     columns = result.columns
     assert {len(column) for column in columns.values()} == {24}
     assert list(columns)[:5] == [
@@ -126,7 +123,7 @@ def test_columns_are_those_of_the_points(result: rpscli.StudyResult) -> None:
         result["max_rotatoin"]
 
 
-def test_pandas_takes_the_columns(result: rpscli.StudyResult) -> None:
+def test_pandas_takes_the_columns(result):
     pytest.importorskip("pandas")
     frame = result.to_dataframe()
     assert list(frame.columns) == list(result.columns)
@@ -138,15 +135,13 @@ def test_pandas_takes_the_columns(result: rpscli.StudyResult) -> None:
     np.testing.assert_allclose(means.to_numpy(), wanted, rtol=1e-14)
 
 
-def test_the_files_are_those_of_the_command(
-    result: rpscli.StudyResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_files_are_those_of_the_command(result, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("study.yaml").write_text(json.dumps(SMALL), encoding="utf-8")
     swept = CliRunner().invoke(program, ["sweep", "study.yaml", "-o", "swept", "-q"])
     assert swept.exit_code == 10, swept.output
     files = [Path(file) for file in result.write("written")]
-    again: list[Any] = []
+    again = []
     rpscli.load_study("study.yaml").run("swept", progress=again.append)
     assert again == []  # the command has computed them all
     names = {file.name for file in files}
@@ -162,12 +157,10 @@ def test_the_files_are_those_of_the_command(
     assert not any(file.endswith("png") for file in result.write("plain", figures=()))
 
 
-def test_references_take_no_more_threads_than_asked(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    asked: list[int] = []
+def test_references_take_no_more_threads_than_asked(monkeypatch):
+    asked = []
 
-    def references(*given: Any) -> dict[Any, Any]:
+    def references(*given):
         asked.append(given[-1])
         return {}
 
@@ -176,26 +169,24 @@ def test_references_take_no_more_threads_than_asked(
     assert asked == [1]
 
 
-def test_a_run_goes_on_where_another_ended(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_run_goes_on_where_another_ended(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     study = rpscli.load_study(SMALL)
-    done: list[int] = []
+    done = []
 
-    def stop(progress: Any) -> None:
+    def stop(progress):
         done.append(progress.done)
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
         study.run("here", jobs=1, progress=stop)
     assert 0 < done[0] <= 24
-    kept: list[int] = []
+    kept = []
     whole = study.run(
         "here", jobs=2, progress=lambda progress: kept.append(progress.kept)
     )
     assert set(kept) <= {done[0]}
-    again: list[Any] = []
+    again = []
     rpscli.load_study(SMALL).run("here", progress=again.append)
     assert again == []  # nothing was left to compute
     alone = study.run("there", jobs=1)
@@ -203,9 +194,7 @@ def test_a_run_goes_on_where_another_ended(
         np.testing.assert_array_equal(column, alone.columns[name])
 
 
-def test_folders_of_others_are_left_alone(
-    result: rpscli.StudyResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_folders_of_others_are_left_alone(result, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     study = result.study
     Path("taken").mkdir()
@@ -220,7 +209,7 @@ def test_folders_of_others_are_left_alone(
         result.write()
 
 
-def test_a_store_that_is_gone_is_not_made_anew(tmp_path: Path) -> None:
+def test_a_store_that_is_gone_is_not_made_anew(tmp_path):
     result = rpscli.load_study(SMALL).run(tmp_path / "gone", jobs=1)
     rmtree(tmp_path / "gone")
     with pytest.raises(rpscli.RpsError, match="no longer exists; run the study again"):
@@ -228,7 +217,7 @@ def test_a_store_that_is_gone_is_not_made_anew(tmp_path: Path) -> None:
     assert not (tmp_path / "gone").exists()
 
 
-def test_a_temporary_store_ends_with_its_result() -> None:
+def test_a_temporary_store_ends_with_its_result():
     study = rpscli.load_study(SMALL | {"scale": [0.1], "vary": []})
     result = study.run(jobs=1)
     folder = result.folder
@@ -238,10 +227,8 @@ def test_a_temporary_store_ends_with_its_result() -> None:
 
 
 @pytest.mark.parametrize("name", ["overturning", "lines"])
-def test_reports_are_drawn_into_figures_and_axes(
-    result: rpscli.StudyResult, name: str
-) -> None:
-    own: Any = result.draw(name)
+def test_reports_are_drawn_into_figures_and_axes(result, name):
+    own = result.draw(name)
     assert isinstance(own, Figure)
     assert own.get_suptitle().startswith("A small study")
     figure = Figure(figsize=(9.0, 4.0), layout="constrained")
@@ -251,7 +238,7 @@ def test_reports_are_drawn_into_figures_and_axes(
     assert not left.axes
     figure = Figure(layout="constrained")
     one, two = figure.subplots(1, 2)
-    part: Any = result.draw(name, two)
+    part = result.draw(name, two)
     assert part in figure.subfigs
     assert figure.axes[0] is one
     assert two not in figure.axes
@@ -262,7 +249,7 @@ def test_reports_are_drawn_into_figures_and_axes(
     assert plain.get_size_inches().tolist() == [6.0, 5.0]
 
 
-def test_what_cannot_be_drawn_is_told(result: rpscli.StudyResult) -> None:
+def test_what_cannot_be_drawn_is_told(result):
     with pytest.raises(
         rpscli.RpsError, match="demand is not a report of the study; it has over"
     ):
@@ -272,7 +259,7 @@ def test_what_cannot_be_drawn_is_told(result: rpscli.StudyResult) -> None:
         result.draw("overturning", loose)
 
 
-def test_what_must_be_read_is_told(result: rpscli.StudyResult) -> None:
+def test_what_must_be_read_is_told(result):
     odd = rpscli.load_study(
         SMALL | {"scale": [9.0]}, ["podium.bearing.semi_diagonal=150"]
     )
@@ -289,7 +276,7 @@ def test_what_must_be_read_is_told(result: rpscli.StudyResult) -> None:
     )
 
 
-def test_tables_of_many_values_draw_the_first_and_hold_all(tmp_path: Path) -> None:
+def test_tables_of_many_values_draw_the_first_and_hold_all(tmp_path):
     values = [round(0.2 + 0.005 * k, 3) for k in range(112)]
     vary = [
         {"superstructure.storey_mass": ["200 t"]},
@@ -318,7 +305,7 @@ def test_tables_of_many_values_draw_the_first_and_hold_all(tmp_path: Path) -> No
     assert str(tmp_path / "overturning.png") in found.write(tmp_path)
 
 
-def test_studies_without_histories_have_no_statistics() -> None:
+def test_studies_without_histories_have_no_statistics():
     vary = [{"superstructure.period": [0.3, 0.6]}]
     study = {"rps": 1, "analysis": "modal", "base": SMALL["base"], "vary": vary}
     result = rpscli.load_study(study).run()
@@ -329,7 +316,7 @@ def test_studies_without_histories_have_no_statistics() -> None:
         _ = result.statistics
 
 
-def test_they_show_themselves_in_a_line(result: rpscli.StudyResult) -> None:
+def test_they_show_themselves_in_a_line(result):
     assert repr(result.study).startswith(
         "Study(title=A small study, points=24, systems=4, "
     )
@@ -339,7 +326,7 @@ def test_they_show_themselves_in_a_line(result: rpscli.StudyResult) -> None:
     assert "<td>A small study</td>" in result._repr_html_()
 
 
-def test_changes_of_the_impact_law_are_mapped(tmp_path: Path) -> None:
+def test_changes_of_the_impact_law_are_mapped(tmp_path):
     """By a script beside the study: the median of what stood twice, and who overturned."""
     variables = runpy.run_path(str(ROOT / "cases/studies/impact_law/changes.py"))
     heads = [
@@ -376,9 +363,7 @@ def test_changes_of_the_impact_law_are_mapped(tmp_path: Path) -> None:
     ]  # fmt: skip
 
 
-def test_many_systems_print_few_lines(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_many_systems_print_few_lines(tmp_path, monkeypatch):
     """What limits and reports ask for, verdicts once; the rest with `--all`."""
     monkeypatch.chdir(tmp_path)
     alphas = [0.10, 0.12, 0.15]

@@ -1,9 +1,6 @@
 """Results of the files that reproduce the paper, computed once for all tests."""
 
-from __future__ import annotations
-
 import csv
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -13,11 +10,8 @@ from rpscli.cli import program
 
 CASES = Path(__file__).parents[2] / "cases" / "compdyn2021"
 
-Row = dict[str, str]
-Reproduce = Callable[..., list[Row]]
 
-
-def rows_of(path: Path) -> list[Row]:
+def rows_of(path):
     """Rows of a CSV file; units are taken out of the header."""
     with path.open(encoding="utf-8", newline="") as file:
         return [
@@ -27,11 +21,11 @@ def rows_of(path: Path) -> list[Row]:
 
 
 @pytest.fixture(scope="session")
-def reproduce(tmp_path_factory: pytest.TempPathFactory) -> Reproduce:
+def reproduce(tmp_path_factory):
     """Run a study of the folder (once) and read one of its tables; figures are left out."""
-    folders: dict[tuple[str, ...], Path] = {}
+    folders = {}
 
-    def read(study: str, table: str, *overrides: str) -> list[Row]:
+    def read(study, table, *overrides):
         key = (study, *overrides)
         if key not in folders:
             folder = tmp_path_factory.mktemp(study)

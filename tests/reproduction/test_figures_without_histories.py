@@ -1,16 +1,11 @@
 """Figures 1c to 6: what pushover and modal analyses say, always checked."""
 
-from __future__ import annotations
-
-from collections.abc import Iterable
-
 import numpy as np
 import pytest
-from paper_structures import Array
 from shown_commands import told
 
-from reproduction.conftest import CASES, Reproduce, Row
-from rpscli.analyses.modal import UpliftedModes, modal
+from reproduction.conftest import CASES
+from rpscli.analyses.modal import modal
 from rpscli.case.case import load_case
 
 RHO = "podium.bearing.curvature_ratio"
@@ -18,7 +13,7 @@ SIZE = "podium.bearing.semi_diagonal"
 OWN = "first_order.frequency_parameter"
 
 
-def values(rows: Iterable[Row], **wanted: str) -> list[float]:
+def values(rows, **wanted):
     """The column `value` of the rows that hold what is wanted; `rho` and `R` are short names."""
     keys = {"rho": RHO, "R": SIZE}
     found = [
@@ -31,10 +26,10 @@ def values(rows: Iterable[Row], **wanted: str) -> list[float]:
 
 
 @pytest.mark.evidence("pushover", "published")
-def test_figure_1c_stiffness_is_negative_zero_positive(reproduce: Reproduce) -> None:
+def test_figure_1c_stiffness_is_negative_zero_positive(reproduce):
     rows = reproduce("figure_1c", "figure_1c")
 
-    def start(rho: str) -> float:
+    def start(rho):
         """Slope of F/W against u_b at the start, times 2 R: 2 rho - 1 to first order [-]."""
         u = [float(row["curve.displacement"]) for row in rows if row[RHO] == rho][:2]
         force = values(rows, rho=rho)[:2]
@@ -52,11 +47,11 @@ def test_figure_1c_stiffness_is_negative_zero_positive(reproduce: Reproduce) -> 
 
 
 @pytest.mark.evidence("modes", "published")
-def test_figure_3_amplification(reproduce: Reproduce) -> None:
+def test_figure_3_amplification(reproduce):
     frequency = reproduce("figure_3", "figure_3_frequency")
     damping = reproduce("figure_3", "figure_3_damping")
 
-    def factor(rows: list[Row], phase: str, rho: str) -> Array:
+    def factor(rows, phase, rho):
         name = "frequency" if rows is frequency else "damping"
         return np.array(
             values(rows, rho=rho, result=f"{phase}.first_order.{name}_ratio.0")
@@ -89,11 +84,11 @@ def test_figure_3_amplification(reproduce: Reproduce) -> None:
 
 
 @pytest.mark.evidence("modes", "published")
-def test_figure_4a_size(reproduce: Reproduce) -> None:
+def test_figure_4a_size(reproduce):
     rolling = reproduce("figure_4a", "figure_4a_rolling")
     assert set(values(rolling, rho="0.5", result=f"rolling.{OWN}")) == {0.0}
 
-    def excess(rho: str) -> Array:
+    def excess(rho):
         """How far the rigid estimate is above the model, from R = 0.5 to 3 m."""
         model = np.array(values(rolling, rho=rho, result=f"rolling.{OWN}"))
         rigid = np.array(values(rolling, rho=rho, result=f"rolling.{OWN}_rigid"))
@@ -116,7 +111,7 @@ def test_figure_4a_size(reproduce: Reproduce) -> None:
 
 
 @pytest.mark.evidence("modes", "published")
-def test_figure_4b_radius(reproduce: Reproduce) -> None:
+def test_figure_4b_radius(reproduce):
     rows = reproduce("figure_4b", "figure_4b")
     for size in ("0.5", "1", "1.5", "3"):
         rho = np.array([float(row[RHO]) for row in rows if row[SIZE] == size])
@@ -133,7 +128,7 @@ def test_figure_4b_radius(reproduce: Reproduce) -> None:
 
 
 @pytest.mark.evidence("modes", "published")
-def test_figure_5_number_of_storeys(reproduce: Reproduce) -> None:
+def test_figure_5_number_of_storeys(reproduce):
     rows = reproduce("figure_5", "figure_5")
     for size in ("1", "1.5", "2", "3"):
         negative, positive = (
@@ -151,8 +146,8 @@ def test_figure_5_number_of_storeys(reproduce: Reproduce) -> None:
 
 
 @pytest.mark.evidence("modes", "published")
-def test_figure_6_elastic_parts() -> None:
-    def states(rho: str) -> list[UpliftedModes]:
+def test_figure_6_elastic_parts():
+    def states(rho):
         override = f"podium.bearing.curvature_ratio={rho}"
         result = modal(load_case(CASES / "figure_6.yaml", [override]).structure)
         assert result.rolling is not None

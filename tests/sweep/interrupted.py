@@ -4,32 +4,30 @@ Three batches are begun, and it comes while the third one is computed. Threads w
 of earlier batches are stored.
 """
 
-from __future__ import annotations
-
 import os
 import signal
 import time
-from collections.abc import Sequence
+from itertools import count
 
 from rpscli.cli import program
 from rpscli.sweep import run
-from rpscli.sweep.evaluation import Point, PointResults, StudyContext, run_batch
+from rpscli.sweep.evaluation import run_batch
 from rpscli.sweep.store import Store
 
 LAST = 3
 """Number of the batch at which the signal comes."""
 
-begun: list[int] = []
-stored: list[int] = []
+begun = count(1)
+stored = []
 store_points = Store.add
 
 
-def compute(context: StudyContext, points: Sequence[Point]) -> PointResults:
+def compute(context, points):
     """A batch, when all earlier ones are stored."""
-    begun.append(len(points))
-    while len(stored) < len(begun) - 1:
+    number = next(begun)
+    while len(stored) < number - 1:
         time.sleep(0.001)
-    if len(begun) == LAST:
+    if number == LAST:
         os.kill(os.getpid(), signal.SIGINT)
         while (
             signal.getsignal(signal.SIGINT) is not signal.default_int_handler
@@ -38,7 +36,7 @@ def compute(context: StudyContext, points: Sequence[Point]) -> PointResults:
     return run_batch(context, points)
 
 
-def add(store: Store, keys: Sequence[bytes], results: PointResults) -> None:
+def add(store, keys, results):
     """Store a batch."""
     store_points(store, keys, results)
     stored.append(1)
@@ -47,6 +45,6 @@ def add(store: Store, keys: Sequence[bytes], results: PointResults) -> None:
 if __name__ == "__main__":
     # Shells have what runs in the background ignore SIGINT, and its children inherit that.
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    run.run_batch = compute  # type: ignore[attr-defined]
-    Store.add = add  # type: ignore[method-assign, assignment]
+    run.run_batch = compute
+    Store.add = add
     program()

@@ -1,20 +1,13 @@
 """A small case and study, what a sweep leaves, and made-up results whose statistics are known."""
 
-from __future__ import annotations
-
 import csv
 import json
-from collections.abc import Callable, Iterable
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple
 
 import numpy as np
-from click.testing import Result
 
-from rpscli.case.study.study import Study
-from rpscli.report.study.report import Found
-from rpscli.studies import Study as LaidOut
 from rpscli.studies import load_study
 from rpscli.sweep.evaluation import (
     FAILED,
@@ -24,8 +17,8 @@ from rpscli.sweep.evaluation import (
     at_path,
     stacked,
 )
-from rpscli.sweep.points import StudyPoints, lay_out
-from rpscli.sweep.table import StoredPoints, Table
+from rpscli.sweep.points import lay_out
+from rpscli.sweep.table import Table
 
 ROOT = Path(__file__).parents[2]
 FOLDER = Path("results/study/sweep")
@@ -64,24 +57,19 @@ scale: [0.5, 1.0]
 """
 WITHOUT_RECORDS = STUDY[: STUDY.index("records:")]
 
-Make = Callable[..., Study]
-Sweep = Callable[..., Result]
-SweepJson = Callable[..., dict[str, Any]]
 
-
-def study_file(path: Path | str, *overrides: str) -> LaidOut:
+def study_file(path, *overrides):
     """A study as `rps sweep` reads it."""
     return load_study(path, overrides)
 
 
-def document_of(result: Result, exit_code: int) -> dict[str, Any]:
+def document_of(result, exit_code):
     """The JSON document that a command printed, which ended with an exit code."""
     assert result.exit_code == exit_code, result.stderr
-    document: dict[str, Any] = json.loads(result.stdout)
-    return document
+    return json.loads(result.stdout)
 
 
-def csv_rows(name: str, folder: Path | str = FOLDER) -> list[dict[str, str]]:
+def csv_rows(name, folder=FOLDER):
     """Lines of a CSV file."""
     with (Path(folder) / name).open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
@@ -95,29 +83,25 @@ class Stored(NamedTuple):
     results: dict[str, Any]
 
 
-Place = dict[str, Any]
-"""Values of the varied keys of a point, the last digit of its record, its scale and its number."""
-Answer = Callable[[Place], Stored | None]
-
 RHO, ALPHA = "podium.bearing.curvature_ratio", "podium.bearing.slenderness"
 BROKEN = Stored("failed", "why", {})
 
 
-def stored(outcome: str = "survived", **results: object) -> Stored:
+def stored(outcome="survived", **results):
     """A made-up result."""
-    whole: dict[str, object] = dict.fromkeys(SCALARS["timehistory"], 0.0)
+    whole = dict.fromkeys(SCALARS["timehistory"], 0.0)
     shears = results.pop("storey_shears", [3.0, 2.0, 1.0])
     return Stored(
         outcome, None, {**whole, "scale": 1.0, **results, "storey_shears": shears}
     )
 
 
-def fallen(falls: object, **results: object) -> Stored:
+def fallen(falls, **results):
     """A made-up result, of a structure that overturned or survived."""
     return stored("overturned_rolling" if falls else "survived", **results)
 
 
-def reader(rows: Iterable[Stored | None]) -> Callable[[Iterable[str]], PointResults]:
+def reader(rows):
     """Reads columns of rows by their names, as a store does."""
     points = [row or Stored(MISSING, None, {}) for row in rows]
     names = dict.fromkeys(name for point in points for name in point.results)
@@ -131,7 +115,7 @@ def reader(rows: Iterable[Stored | None]) -> Callable[[Iterable[str]], PointResu
         if point.outcome == FAILED
     }
 
-    def read(wanted: Iterable[str]) -> PointResults:
+    def read(wanted):
         known = {name: at_path(columns, name) for name in wanted}
         found = {name: column for name, column in known.items() if column is not None}
         return PointResults(outcomes, told, found)
@@ -139,7 +123,7 @@ def reader(rows: Iterable[Stored | None]) -> Callable[[Iterable[str]], PointResu
     return read
 
 
-def place(layout: StudyPoints, number: int) -> Place:
+def place(layout, number):
     point = layout[number]
     named = dict(zip(layout.plan.keys, point.values, strict=True))
     source = point.record.source if point.record else "-"
@@ -147,24 +131,17 @@ def place(layout: StudyPoints, number: int) -> Place:
     return {**named, "record": record, "scale": point.scale, "number": number}
 
 
-def made(
-    make: Make,
-    answer: Answer,
-    *changes: tuple[str, str],
-    text: str = STUDY,
-    fixed: Any = None,
-) -> StoredPoints:
+def made(make, answer, *changes, text=STUDY, fixed=None):
     """Results, as reports take them, of 2 slendernesses x 3 curvatures x 3 records x 2 scales."""
     layout = lay_out(make(text, *changes))
     read = reader(answer(place(layout, number)) for number in range(len(layout)))
     table = Table.of(layout, read)
-    results = SimpleNamespace(
+    return SimpleNamespace(
         table=table, context=layout.context, stored=read, fixed_base=fixed
     )
-    return cast("StoredPoints", results)
 
 
-def fixed_base(layout: StudyPoints, shears: list[float]) -> dict[Any, Any]:
+def fixed_base(layout, shears):
     """The same storey shears on a fixed base of all systems under all records."""
     systems, known = (
         range(len(layout.properties)),
@@ -173,7 +150,7 @@ def fixed_base(layout: StudyPoints, shears: list[float]) -> dict[Any, Any]:
     return {(system, record): np.array(shears) for system in systems for record in known}
 
 
-def cells(found: Found, suffix: str = "") -> dict[str, list[Any]]:
+def cells(found, suffix=""):
     """Values of the columns of a table of a report, by name."""
     return {
         c.name: np.asarray(c.values, dtype=object).tolist() for c in found.tables[suffix]

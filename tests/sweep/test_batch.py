@@ -1,12 +1,7 @@
 """What comes out for a point depends on the point alone."""
 
-from __future__ import annotations
-
 import itertools
 import math
-from collections.abc import Iterator
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -21,7 +16,6 @@ from paper_structures import (
 from pydantic import ValidationError
 
 from rpscli.analyses.demand import Request, demands, histories
-from rpscli.analyses.largest_demands import Demands
 from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
 from rpscli.analyses.result_quantities import SAMPLED
@@ -31,22 +25,22 @@ from rpscli.case.study.schema import PerturbSection, RangeSection, SampleSection
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.loading import load_components, load_record
 from rpscli.records.measures import intensity_measures, measured
-from rpscli.sweep.evaluation import SCALARS, PointResults, at_path, resolved, run_batch
+from rpscli.sweep.evaluation import SCALARS, at_path, resolved, run_batch
 from rpscli.sweep.points import lay_out
 from rpscli.sweep.run import LARGEST_BATCH, all_keys, batches
 from rpscli.sweep.statistics import summary
 from rpscli.sweep.statistics.summary import step_notes
 from rpscli.sweep.systems import balance_note, changes, sample
-from sweep.small_studies import BASE, STUDY, WITHOUT_RECORDS, Make
+from sweep.small_studies import BASE, STUDY, WITHOUT_RECORDS
 
 PERTURB = ("scale: [", "perturb: {members: 3}\nscale: [")
 
 
-def rows(results: PointResults) -> list[dict[str, object]]:
+def rows(results):
     """Outcome, message and results of each point, None where it has none."""
     found = []
     for row, outcome in enumerate(results.outcomes.tolist()):
-        told: dict[str, object] = {
+        told = {
             "outcome": outcome,
             "message": results.messages.get(row),
         }
@@ -63,7 +57,7 @@ def rows(results: PointResults) -> list[dict[str, object]]:
     return found
 
 
-def test_bits_do_not_depend_on_the_batch(study_of: Make) -> None:
+def test_bits_do_not_depend_on_the_batch(study_of):
     layout = lay_out(study_of())
     together = run_batch(layout.context, list(layout))
     backwards = run_batch(layout.context, list(layout)[::-1])
@@ -78,9 +72,7 @@ UPWARDS = "synthetic:?pga=0.3g&duration=4&dt=0.02&seed=2"
 
 
 @pytest.mark.parametrize("vertical", [None, UPWARDS])
-def test_results_are_those_of_a_single_time_history(
-    study_of: Make, workplace: Path, vertical: str | None
-) -> None:
+def test_results_are_those_of_a_single_time_history(study_of, workplace, vertical):
     layout = lay_out(study_of(STUDY, PERTURB))
     if vertical:  # which a case says beside its record
         record = f"record: {{source: '{UPWARDS[:-1]}1', vertical: '{UPWARDS}'}}\n"
@@ -110,7 +102,7 @@ def test_results_are_those_of_a_single_time_history(
             assert row.get(name) == expected, name
 
 
-def test_whole_histories_tell_more_and_nothing_else(study_of: Make) -> None:
+def test_whole_histories_tell_more_and_nothing_else(study_of):
     friction = ("podium.friction=0.12",)  # less than is asked of it: columns slide
     change = ("scale: [", "whole_histories: true\nscale: [")
     brief, whole = (
@@ -131,9 +123,7 @@ def test_whole_histories_tell_more_and_nothing_else(study_of: Make) -> None:
     assert all_keys(brief)[3] != all_keys(whole)[3]
 
 
-def test_points_that_cannot_be_computed_do_not_disturb_the_others(
-    study_of: Make, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_points_that_cannot_be_computed_do_not_disturb_the_others(study_of, monkeypatch):
     """A record that is gone, and an exception of the kernel."""
     layout = lay_out(study_of())
     points = list(layout)[:3]
@@ -141,7 +131,7 @@ def test_points_that_cannot_be_computed_do_not_disturb_the_others(
     assert points[0].record is not None
     gone = points[0]._replace(record=points[0].record._replace(source="gone.at2"))
 
-    def fragile(requests: list[Request]) -> Iterator[tuple[list[int], Demands]]:
+    def fragile(requests):
         if any(request.scale == 1.0 for request in requests):
             raise FloatingPointError("boom")
         return histories(requests)
@@ -156,7 +146,7 @@ def test_points_that_cannot_be_computed_do_not_disturb_the_others(
         assert set(failed) == {"outcome", "message", "storey_shears"}
 
 
-def test_modal_points_have_the_modes(study_of: Make) -> None:
+def test_modal_points_have_the_modes(study_of):
     layout = lay_out(study_of(WITHOUT_RECORDS + "analysis: modal\n"))
     columns = run_batch(layout.context, list(layout)).columns
     assert np.isnan(columns["rolling.frequency_ratio"][2]).all()  # flat
@@ -167,10 +157,10 @@ def test_modal_points_have_the_modes(study_of: Make) -> None:
     assert found[0] == modes.rolling.frequency_ratio[0]
     assert at_path(columns, "rolling.frequency_ratio.7") is None
     shape = columns["fixed_base.shapes"][0, 0].tolist()
-    assert shape == [0.0, *modes.fixed_base.shapes[:, 0]]  # type: ignore[union-attr]
+    assert shape == [0.0, *modes.fixed_base.shapes[:, 0]]
 
 
-def test_pushover_points_have_the_curve(study_of: Make) -> None:
+def test_pushover_points_have_the_curve(study_of):
     layout = lay_out(study_of(WITHOUT_RECORDS + "analysis: pushover\n"))
     found = run_batch(layout.context, [layout[0]])
     expected = pushover(layout.system(0).structure)
@@ -186,7 +176,7 @@ SAMPLE = (
 )
 
 
-def test_the_last_axis_runs_fastest(study_of: Make) -> None:
+def test_the_last_axis_runs_fastest(study_of):
     design = lay_out(study_of())
     expected = itertools.product(
         [(0.10, 0.20), (0.15, 0.30)], ["critical", 0.5, 0], [1, 2, 3], [0.5, 1.0]
@@ -197,9 +187,7 @@ def test_the_last_axis_runs_fastest(study_of: Make) -> None:
     assert [point.number for point in design] == list(range(len(design)))
 
 
-def test_members_of_an_ensemble_multiply_and_begin_with_the_point_itself(
-    study_of: Make,
-) -> None:
+def test_members_of_an_ensemble_multiply_and_begin_with_the_point_itself(study_of):
     design = lay_out(study_of(STUDY, MEMBERS))
     assert len(design) == 36 * 4
     first = [design[i] for i in range(4)]
@@ -210,12 +198,12 @@ def test_members_of_an_ensemble_multiply_and_begin_with_the_point_itself(
     assert design[5].scale_change == design[1].scale_change
 
 
-def test_more_members_leave_the_earlier_ones() -> None:
+def test_more_members_leave_the_earlier_ones():
     few, many = (changes(PerturbSection(members=n)) for n in (3, 9))
     assert many[:3] == few
 
 
-def test_samples_are_one_more_axis_and_repeat(study_of: Make) -> None:
+def test_samples_are_one_more_axis_and_repeat(study_of):
     first, second = (lay_out(study_of(STUDY, SAMPLE)) for _ in range(2))
     assert len(first) == 36 * 8
     assert first[100].values == second[100].values
@@ -224,7 +212,7 @@ def test_samples_are_one_more_axis_and_repeat(study_of: Make) -> None:
     assert all(5.0 < value < 10.0 for value in gamma)
 
 
-def test_distributions_have_the_moments_that_are_asked_for() -> None:
+def test_distributions_have_the_moments_that_are_asked_for():
     kinds = ("uniform", "normal", "lognormal")
     ranges = {kind: RangeSection(distribution=kind, mean=2.0, cov=0.2) for kind in kinds}
     drawn = sample(SampleSection(method="sobol", size=4096, ranges=ranges))
@@ -236,14 +224,14 @@ def test_distributions_have_the_moments_that_are_asked_for() -> None:
     )
 
 
-def test_latin_hypercube_has_one_value_in_each_stratum() -> None:
+def test_latin_hypercube_has_one_value_in_each_stratum():
     section = SampleSection(method="latin_hypercube", size=10, ranges={"x": (0.0, 1.0)})
     assert sorted((sample(section)[:, 0] * 10).astype(int)) == list(range(10))
 
 
-def test_ranges_may_have_the_unit_of_their_key() -> None:
+def test_ranges_may_have_the_unit_of_their_key():
     width, period = "podium.bearing.dimensions.width", "superstructure.period"
-    ranges: dict[str, Any] = {width: ["323 mm", 0.337]}
+    ranges = {width: ["323 mm", 0.337]}
     ranges[period] = {"distribution": "normal", "mean": "420 ms", "cov": 0.1}
     found = SampleSection(size=2, ranges=ranges).ranges
     assert (found[width].low, found[width].high, found[period].mean) == (
@@ -255,14 +243,14 @@ def test_ranges_may_have_the_unit_of_their_key() -> None:
         SampleSection(size=2, ranges={width: ["323 kg", 0.337]})
 
 
-def test_uneven_sobol_sizes_are_remarked_on() -> None:
+def test_uneven_sobol_sizes_are_remarked_on():
     ranges = {"x": (0.0, 1.0)}
     assert balance_note(SampleSection(size=64, ranges=ranges)) is None
     assert "64" in str(balance_note(SampleSection(size=100, ranges=ranges)))
 
 
 @pytest.mark.parametrize("measure", ["PGV", "Arias"])
-def test_records_are_scaled_to_a_measure(study_of: Make, measure: str) -> None:
+def test_records_are_scaled_to_a_measure(study_of, measure):
     """Arias intensity grows with the square."""
     scale = f"scale: {{measure: {measure}, values: [0.3, 0.6]}}"
     design = lay_out(study_of(STUDY, ("scale: [0.5, 1.0]", scale)))
@@ -273,7 +261,7 @@ def test_records_are_scaled_to_a_measure(study_of: Make, measure: str) -> None:
         assert found == pytest.approx(point.scale, rel=1e-12)
 
 
-def test_sa_is_taken_at_the_first_period_of_each_system(study_of: Make) -> None:
+def test_sa_is_taken_at_the_first_period_of_each_system(study_of):
     sa = ("scale: [0.5, 1.0]", "scale: {measure: Sa, values: [2.0]}")
     vary = (
         "  - podium.bearing.c",
@@ -294,7 +282,7 @@ def test_sa_is_taken_at_the_first_period_of_each_system(study_of: Make) -> None:
     assert len(periods) == 2
 
 
-def test_keys_do_not_depend_on_how_a_study_arrives_at_a_point(study_of: Make) -> None:
+def test_keys_do_not_depend_on_how_a_study_arrives_at_a_point(study_of):
     whole = lay_out(study_of())
     turned = lay_out(
         study_of(STUDY, ("critical, 0.5, 0", "0, critical"), ("0.5, 1.0", "1.0"))
@@ -306,7 +294,7 @@ def test_keys_do_not_depend_on_how_a_study_arrives_at_a_point(study_of: Make) ->
     assert all_keys(titled) == first
 
 
-def test_batches_hold_every_point_once_and_one_size_of_building(study_of: Make) -> None:
+def test_batches_hold_every_point_once_and_one_size_of_building(study_of):
     vary = (
         "  - podium.bearing.c",
         "  - superstructure.storeys: [2, 3]\n  - podium.bearing.c",
@@ -323,7 +311,7 @@ def test_batches_hold_every_point_once_and_one_size_of_building(study_of: Make) 
 class Points:
     """What is asked of a table, its layout and its context: every fourth history is chaotic."""
 
-    def __init__(self, count: int) -> None:
+    def __init__(self, count):
         self.failed = np.zeros(count, bool)
         self.layout = self.context = self
         self.structure = podium(1, 0.15, FLAT, superstructure=building(1, 0.1))
@@ -335,23 +323,21 @@ class Points:
             name: np.array([getattr(one, name) for one in found]) for name in names
         }
 
-    def __getitem__(self, number: int) -> int:
+    def __getitem__(self, number):
         return number
 
-    def history(self, number: int) -> Request:
+    def history(self, number):
         motion = self.chaotic if number % 4 == 2 else stillness(1.0)
         settings = TimeHistorySettings(free_vibration=1.0)
         return Request(self.structure, MotionComponents(motion), settings)
 
 
-def notes(points: Points) -> list[str]:
-    return list(step_notes(points))  # type: ignore[arg-type]
+def notes(points):
+    return list(step_notes(points))
 
 
 @needs_compiled_kernels
-def test_points_that_change_with_half_the_steps_are_named(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_points_that_change_with_half_the_steps_are_named(monkeypatch):
     (found,) = notes(Points(4))
     assert found.startswith("steps: of 4 points (of 4) computed again")
     assert "1 changed: point 3 (" in found

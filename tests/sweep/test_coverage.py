@@ -1,21 +1,16 @@
 """How often intervals hold the truth, where recordings are drawn from the far-field pairs."""
 
-from __future__ import annotations
-
 import re
-from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from paper_structures import needs_recorded_motions
 from shown_commands import VERIFICATION, table
 
 import rpscli
 from rpscli.records.recordings import clusters
 from rpscli.sweep.statistics.fractiles import clustered
-from rpscli.sweep.statistics.lognormal import Bootstrap, Lognormal, lognormal_fit
+from rpscli.sweep.statistics.lognormal import Bootstrap, lognormal_fit
 
 pytestmark = pytest.mark.evidence("statistics and fragilities", "exact")
 
@@ -39,8 +34,6 @@ STUDY = {
     "records": ["fema_p695:farfield/*"],
     "scale": {"measure": "PGA", "values": [f"{level} g" for level in LEVELS], "of": "component"},
 }  # fmt: skip
-Beyond = NDArray[np.bool_]
-"""(pairs, 2, levels)."""
 
 
 SHOWN = [
@@ -50,18 +43,16 @@ SHOWN = [
 
 
 @pytest.fixture(scope="module")
-def outcomes(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Beyond]:
+def outcomes(tmp_path_factory):
     """What overturned, and what turned by half of the critical rotation: 22 pairs are all."""
-    folder: Path = tmp_path_factory.mktemp("coverage")
+    folder = tmp_path_factory.mktemp("coverage")
     points = rpscli.load_study(STUDY).run(folder)
     fallen = np.char.startswith(points["outcome"].astype(str), "overturned")
     turned = fallen | (np.asarray(points["rotation_ratio"], dtype=float) > 0.5)
     return {"overturned": fallen.reshape(22, 2, -1), "turned": turned.reshape(22, 2, -1)}
 
 
-def fitted(
-    beyond: Beyond, resamples: int, seed: int, cluster: NDArray[np.int64] | None = None
-) -> Lognormal:
+def fitted(beyond, resamples, seed, cluster=None):
     """Of clusters (pairs, 2), by default of pairs."""
     if cluster is None:
         cluster = np.repeat(np.arange(len(beyond)), 2)
@@ -80,9 +71,7 @@ EVENTS = clusters([f"fema_p695:farfield/{pair}/a" for pair in range(1, 23)], by=
 @needs_recorded_motions
 @pytest.mark.parametrize("cluster_of", [range(22), EVENTS], ids=["pairs", "events"])
 @pytest.mark.parametrize("what", ["overturned", "turned"])
-def test_bands_and_shares_hold_what_they_say(
-    outcomes: dict[str, Beyond], what: str, cluster_of: Sequence[int]
-) -> None:
+def test_bands_and_shares_hold_what_they_say(outcomes, what, cluster_of):
     """22 pairs drawn from 22, or 14 events of one or two pairs from 14, 1500 times: 0.90 +- 0.03.
 
     1500 draws have a standard error of 0.008, and the same seeds give the same numbers, those of
@@ -123,9 +112,7 @@ def test_bands_and_shares_hold_what_they_say(
 @needs_recorded_motions
 @pytest.mark.parametrize("drawn", [7, 22])
 @pytest.mark.parametrize("what", ["overturned", "turned"])
-def test_intervals_of_shares_hold_what_they_promise(
-    outcomes: dict[str, Beyond], what: str, drawn: int
-) -> None:
+def test_intervals_of_shares_hold_what_they_promise(outcomes, what, drawn):
     """Clopper's and Pearson's interval holds at least 95 %; of 44 components as if they were
     independent it does not everywhere."""
     draws, generator = 2000, np.random.default_rng(1)
@@ -149,7 +136,7 @@ def test_intervals_of_shares_hold_what_they_promise(
         assert low - 0.051 < 100 * min(part) <= 100 * max(part) < high + 0.051
 
 
-def test_intervals_of_clusters_of_any_likeness_hold_their_share() -> None:
+def test_intervals_of_clusters_of_any_likeness_hold_their_share():
     """4, 8 and 22 recordings of 2 and 12 histories: normal variables that correlate by 0.3 to 0.95,
     of which 10 to 50 % are below a threshold. 200 draws each: 95 % within three standard errors."""
     from scipy.stats import norm

@@ -1,16 +1,13 @@
 """`rps design`: exact answers, refusals, workers, interruptions, and what hangs on the records."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
 
 import jsonschema
 import numpy as np
 import pytest
-from click.testing import CliRunner, Result
+from click.testing import CliRunner
 from paper_structures import needs_compiled_kernels, python
 
 from rpscli.case.text.files import read_text
@@ -22,7 +19,7 @@ from rpscli.sweep.run import LARGEST_BATCH
 from rpscli.tools.design.keys import parse_design
 from rpscli.tools.design.report import neighbours_note
 from rpscli.tools.design.search import Search, weights_of
-from sweep.small_studies import BASE, ROOT, Sweep, SweepJson, csv_rows, document_of
+from sweep.small_studies import BASE, ROOT, csv_rows, document_of
 
 SLENDERNESS = "podium.bearing.slenderness"
 WEDGE = "podium.bearing.wedge_slenderness"
@@ -80,10 +77,10 @@ search: {{first: 8, most: 20, resamples: 50}}
 
 
 @pytest.fixture
-def design(workplace: Path, no_figures: None) -> Sweep:
+def design(workplace, no_figures):
     """Run `rps design` on a text in this process."""
 
-    def invoke(text: str, *arguments: str) -> Result:
+    def invoke(text, *arguments):
         (workplace / "design.yaml").write_text(text, encoding="utf-8")
         return CliRunner().invoke(program, ["design", "design.yaml", *arguments])
 
@@ -91,19 +88,17 @@ def design(workplace: Path, no_figures: None) -> Sweep:
 
 
 @pytest.fixture
-def design_json(design: Sweep) -> SweepJson:
+def design_json(design):
     """The JSON document of `rps design`."""
 
-    def invoke(text: str, *arguments: str, exit_code: int = 0) -> dict[str, Any]:
+    def invoke(text, *arguments, exit_code=0):
         return document_of(design(text, *arguments, "--json"), exit_code)
 
     return invoke
 
 
 @pytest.mark.evidence("design", "exact")
-def test_one_unknown_against_the_exact_answer(
-    design: Sweep, design_json: SweepJson
-) -> None:
+def test_one_unknown_against_the_exact_answer(design, design_json):
     # 30 % of seven are two: the third largest peak must not lift the frame.
     found = design_json(FRAME, "--set", "search.resamples=0")
     exact, close = sorted(PEAKS)[-3], 1.01 * 0.001 * 0.3
@@ -133,7 +128,7 @@ def test_one_unknown_against_the_exact_answer(
 
 
 @pytest.mark.evidence("design", "exact")
-def test_two_unknowns_against_the_exact_answer(design_json: SweepJson) -> None:
+def test_two_unknowns_against_the_exact_answer(design_json):
     settings = ("search.most=128", "search.resolution=0.01", "search.resamples=0")
     found = design_json(TWO, *(word for text in settings for word in ("--set", text)))
     values = found["best"]["values"]
@@ -147,7 +142,7 @@ def test_two_unknowns_against_the_exact_answer(design_json: SweepJson) -> None:
     assert [requirement["binds"] for requirement in found["requirements"]] == [True]
 
 
-def test_a_number_of_columns_stays_whole(design_json: SweepJson) -> None:
+def test_a_number_of_columns_stays_whole(design_json):
     text = FRAME.replace(f"{SLENDERNESS}: [0.05, 0.35]", "podium.columns: [4, 9]")
     text = text.replace(f"  {WEDGE}: {{{SLENDERNESS}: 2, plus: 0.1}}\n", "")
     text = text.replace("linked:\n", "").replace(
@@ -159,7 +154,7 @@ def test_a_number_of_columns_stays_whole(design_json: SweepJson) -> None:
     assert {row["podium.columns [-]"] for row in rows} <= {str(n) for n in range(4, 10)}
 
 
-def test_nothing_passes(design: Sweep, design_json: SweepJson) -> None:
+def test_nothing_passes(design, design_json):
     found = design_json(FRAME.replace("0.35]", "0.2]"), exit_code=10)
     assert found["best"] is None
     assert found["passed"] is False
@@ -175,7 +170,7 @@ def test_nothing_passes(design: Sweep, design_json: SweepJson) -> None:
 
 
 @needs_compiled_kernels
-def test_verdicts_are_those_of_a_study(design_json: SweepJson) -> None:
+def test_verdicts_are_those_of_a_study(design_json):
     found = design_json(BUILDING, "-o", "out")
     designs = csv_rows("designs.csv", "out")
     verdicts = csv_rows("verdicts.csv", "out")
@@ -213,7 +208,7 @@ RATE = (
 
 
 @needs_compiled_kernels
-def test_a_limit_on_the_annual_rate(design_json: SweepJson, workplace: Path) -> None:
+def test_a_limit_on_the_annual_rate(design_json, workplace):
     """The rate is the integral of the shares, linear in ln PGV, over the hazard, in small steps."""
     (workplace / "hazard.csv").write_text(HAZARD)
     unseen = "validate: {records: ['synthetic:?pga=0.8g&duration=4&dt=0.02&seed=9']}\n"
@@ -263,7 +258,7 @@ def test_a_limit_on_the_annual_rate(design_json: SweepJson, workplace: Path) -> 
 
 
 @needs_compiled_kernels
-def test_perturbed_histories_are_parts_of_their_records(design_json: SweepJson) -> None:
+def test_perturbed_histories_are_parts_of_their_records(design_json):
     design_json(f"{BUILDING}perturb: {{members: 2}}\n", "-o", "out")
     points = csv_rows("points.csv", "out")
     designs = csv_rows("designs.csv", "out")
@@ -283,8 +278,8 @@ def test_perturbed_histories_are_parts_of_their_records(design_json: SweepJson) 
 @pytest.mark.long
 @needs_compiled_kernels
 def test_interrupted_and_resumed_or_in_two_threads_it_ends_in_the_same_bytes(
-    design: Sweep, workplace: Path
-) -> None:
+    design, workplace
+):
     assert design(BUILDING, "--jobs", "2", "-o", "calm").exit_code == 0
     interrupting = str(Path(__file__).with_name("interrupted.py"))
     words = ("design", "design.yaml", "--jobs", "1", "--json", "--figures", "none")
@@ -297,7 +292,7 @@ def test_interrupted_and_resumed_or_in_two_threads_it_ends_in_the_same_bytes(
         assert resumed.read_bytes() == (workplace / "calm" / name).read_bytes()
 
 
-def test_validation(design: Sweep, design_json: SweepJson, workplace: Path) -> None:
+def test_validation(design, design_json, workplace):
     unseen = (
         'validate: {records: [{source: "pulse:half_sine?period=0.4", amplitude: [%s]}]}\n'
     )
@@ -319,7 +314,7 @@ def test_validation(design: Sweep, design_json: SweepJson, workplace: Path) -> N
     assert not set(task.unseen) & set(task.study.sources)
 
 
-def test_invalid_designs_count_as_failing(design_json: SweepJson) -> None:
+def test_invalid_designs_count_as_failing(design_json):
     # The wedge must be outside the flat end.
     text = FRAME.replace("2, plus: 0.1", "-1, plus: 0.55")
     found = design_json(text)
@@ -328,7 +323,7 @@ def test_invalid_designs_count_as_failing(design_json: SweepJson) -> None:
     assert any("not valid cases" in warning for warning in found["warnings"])
 
 
-def test_a_dry_run_computes_nothing(design_json: SweepJson, workplace: Path) -> None:
+def test_a_dry_run_computes_nothing(design_json, workplace):
     for most, designs in ((64, 8), (4, 4)):
         found = design_json(FRAME, "--set", f"search.most={most}", "--dry-run")
         assert (found["command"], found["systems"]) == ("design", designs)
@@ -402,7 +397,7 @@ def test_a_dry_run_computes_nothing(design_json: SweepJson, workplace: Path) -> 
         (f"{WEDGE}: {{", f"{SLENDERNESS}: {{", "14:", "varies"),
     ],
 )
-def test_refusals(design: Sweep, old: str, new: str, place: str, said: str) -> None:
+def test_refusals(design, old, new, place, said):
     assert old in FRAME
     result = design(FRAME.replace(old, new, 1), "--dry-run")
     assert result.exit_code == 3, result.stderr
@@ -410,7 +405,7 @@ def test_refusals(design: Sweep, old: str, new: str, place: str, said: str) -> N
     assert said in result.stderr
 
 
-def test_the_constant_of_a_sum_may_have_a_unit() -> None:
+def test_the_constant_of_a_sum_may_have_a_unit():
     text = FRAME.replace(
         "linked:\n", f"linked:\n  {SIZE}: {{{SLENDERNESS}: 2, plus: 1400 mm}}\n"
     )
@@ -420,9 +415,7 @@ def test_the_constant_of_a_sum_may_have_a_unit() -> None:
     }
 
 
-def test_what_a_design_takes_from_its_base_is_said_first(
-    design: Sweep, workplace: Path
-) -> None:
+def test_what_a_design_takes_from_its_base_is_said_first(design, workplace):
     yielding = BASE.replace("  damping:", "  yield: {ratio: 1.2}\n  damping:")
     (workplace / "base.yaml").write_text(f"{yielding}limits: {{drift_ratio: 0.01}}\n")
     first, second, *_ = design(BUILDING, "--dry-run").stderr.splitlines()
@@ -431,7 +424,7 @@ def test_what_a_design_takes_from_its_base_is_said_first(
     assert parse_design(FRAME, "design.yaml").study.notes == ()
 
 
-def test_cases_studies_and_designs_are_told_apart(design: Sweep, workplace: Path) -> None:
+def test_cases_studies_and_designs_are_told_apart(design, workplace):
     assert "is a case without `variables`" in design(BASE).stderr
     assert "is a file without `variables`" in design("rps: 1").stderr
     (workplace / "task.yaml").write_text(FRAME, encoding="utf-8")
@@ -444,7 +437,7 @@ def test_cases_studies_and_designs_are_told_apart(design: Sweep, workplace: Path
         assert said in result.stderr
 
 
-def test_shipped_designs_keep_the_schema() -> None:
+def test_shipped_designs_keep_the_schema():
     result = CliRunner().invoke(program, ["schema", "design"])
     schema = json.loads(result.stdout)
     files = sorted((ROOT / "cases/designs").glob("*.yaml"))
@@ -460,7 +453,7 @@ def test_shipped_designs_keep_the_schema() -> None:
 @pytest.mark.evidence("design", "exact")
 @pytest.mark.long
 @needs_compiled_kernels
-def test_the_shipped_design_against_a_grid(no_figures: None) -> None:
+def test_the_shipped_design_against_a_grid(no_figures):
     """The best design of a fine grid is hardly better than that of the search.
 
     Near the boundary verdicts are ragged: single designs hold among failing ones, of which grid and
@@ -506,12 +499,10 @@ def test_the_shipped_design_against_a_grid(no_figures: None) -> None:
 
 
 @pytest.mark.parametrize(("beside", "fails"), [((3, 4, 5, 7, 8), 5), ((4, 5, 7), 0)])
-def test_a_best_design_that_stands_alone_is_told(
-    beside: tuple[int, ...], fails: int
-) -> None:
+def test_a_best_design_that_stands_alone_is_told(beside, fails):
     holds = np.array([[True] * 9])
     holds[0, list(beside)] = False
-    answer: Any = SimpleNamespace(places=np.linspace(0.0, 1.0, 9)[:, None], passes=holds)
+    answer = SimpleNamespace(places=np.linspace(0.0, 1.0, 9)[:, None], passes=holds)
     told = list(neighbours_note(answer, 6))
     assert len(told) == (fails > 0)
     assert not told or f"{fails} fail: it stands alone" in told[0]

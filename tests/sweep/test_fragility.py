@@ -1,14 +1,10 @@
 """Fragility fits against statsmodels, and sense where the data are separated."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from rpscli.report.study.fragility import (
     FragilityOptions,
@@ -24,7 +20,6 @@ from rpscli.report.study.scatter import (
 )
 from rpscli.sweep.statistics.lognormal import (
     Bootstrap,
-    Lognormal,
     band,
     lognormal_fit,
     probit_fit,
@@ -33,22 +28,16 @@ from sweep.small_studies import (
     BROKEN,
     RHO,
     WITHOUT_RECORDS,
-    Make,
-    Place,
-    Stored,
     cells,
     fallen,
     made,
     stored,
 )
 
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
-
 MEDIAN, BETA = 0.8, 0.4
 
 
-def drawn(count: int, seed: int = 0) -> tuple[Array, Flags]:
+def drawn(count, seed=0):
     """Intensities, and whether structures of a known fragility passed their limit."""
     random = np.random.default_rng(seed)
     im = np.exp(random.uniform(math.log(0.2), math.log(3.0), count))
@@ -56,22 +45,14 @@ def drawn(count: int, seed: int = 0) -> tuple[Array, Flags]:
     return im, im > capacity
 
 
-def fit(
-    im: Array,
-    y: Flags,
-    weight: float = 1.0,
-    *,
-    resamples: int = 200,
-    confidence: float = 0.9,
-    seed: int = 1,
-) -> Lognormal:
+def fit(im, y, weight=1.0, *, resamples=200, confidence=0.9, seed=1):
     bootstrap = Bootstrap(resamples, confidence, seed)
     return lognormal_fit(im, y, np.arange(len(im)), weight, np.array([0.8]), bootstrap)
 
 
 @pytest.mark.evidence("statistics and fragilities", "program")
 @pytest.mark.parametrize(("count", "seed"), [(40, 1), (400, 2), (4000, 3)])
-def test_maximum_likelihood_is_that_of_statsmodels(count: int, seed: int) -> None:
+def test_maximum_likelihood_is_that_of_statsmodels(count, seed):
     models = pytest.importorskip("statsmodels.api")
     im, y = drawn(count, seed)
     theirs = models.Probit(y.astype(float), models.add_constant(np.log(im))).fit(
@@ -86,7 +67,7 @@ def test_maximum_likelihood_is_that_of_statsmodels(count: int, seed: int) -> Non
 
 
 @pytest.mark.evidence("statistics and fragilities", "exact")
-def test_the_fit_finds_the_fragility_that_made_the_data() -> None:
+def test_the_fit_finds_the_fragility_that_made_the_data():
     im, y = drawn(20_000)
     found = fit(im, y, resamples=0)
     # Standard errors at this size are 0.5 % of the median and 1 % of beta.
@@ -95,7 +76,7 @@ def test_the_fit_finds_the_fragility_that_made_the_data() -> None:
 
 
 @pytest.mark.evidence("statistics and fragilities", "exact")
-def test_bootstrap_bands_cover_the_truth_about_as_often_as_they_say() -> None:
+def test_bootstrap_bands_cover_the_truth_about_as_often_as_they_say():
     inside = 0
     for seed in range(40):
         low, high = fit(*drawn(150, seed), resamples=100, confidence=0.9).median_band
@@ -104,7 +85,7 @@ def test_bootstrap_bands_cover_the_truth_about_as_often_as_they_say() -> None:
     assert 30 <= inside <= 40
 
 
-def test_separated_data_get_a_warning_and_a_sane_beta() -> None:
+def test_separated_data_get_a_warning_and_a_sane_beta():
     im = np.array([0.2, 0.3, 0.5, 0.6, 0.9, 1.2, 1.5, 2.0])
     y = im > 0.7
     found = fit(im, y)
@@ -130,8 +111,8 @@ def test_separated_data_get_a_warning_and_a_sane_beta() -> None:
 )
 @pytest.mark.parametrize("members", [1, 20])
 def test_one_level_alone_with_both_outcomes_determines_no_beta(
-    beyond: list[int], between: tuple[float, float], words: str, members: int
-) -> None:
+    beyond, between, words, members
+):
     """Nor do copies of every point under intensities that differ by 1 % at most."""
     random = np.random.default_rng(3)
     level = np.repeat([0.4, 0.8, 1.6], 10 * members)
@@ -149,7 +130,7 @@ def test_one_level_alone_with_both_outcomes_determines_no_beta(
     assert np.isnan([*found.median_band, *found.beta_band, *np.ravel(found.band)]).all()
 
 
-def test_samples_that_determine_nothing_count_beyond_both_ends() -> None:
+def test_samples_that_determine_nothing_count_beyond_both_ends():
     values = np.arange(1.0, 101.0)
     assert band(values, 0.9) == (5.0, 96.0)  # ranks of 5 % and 95 % of 99 steps, outwards
     values[[3, 50, 80]] = math.nan
@@ -158,7 +139,7 @@ def test_samples_that_determine_nothing_count_beyond_both_ends() -> None:
     assert np.isnan(band(values, 0.9)).all()  # more than a tail of 5 %
 
 
-def test_a_share_that_hardly_grows_has_no_beta_beyond_all_sense() -> None:
+def test_a_share_that_hardly_grows_has_no_beta_beyond_all_sense():
     random = np.random.default_rng(3)
     im = np.exp(random.uniform(-1.0, 1.0, 60))
     found = fit(im, random.uniform(size=60) < 0.45 + 0.05 * im, resamples=400)
@@ -167,7 +148,7 @@ def test_a_share_that_hardly_grows_has_no_beta_beyond_all_sense() -> None:
     assert np.isnan(found.beta_band).all()
 
 
-def test_variations_of_the_same_motions_do_not_pretend_to_more_data() -> None:
+def test_variations_of_the_same_motions_do_not_pretend_to_more_data():
     im = np.array([0.3, 0.5, 0.9, 1.5])
     once = fit(im, im > 0.7, resamples=0)
     often = fit(np.repeat(im, 50), np.repeat(im > 0.7, 50), weight=1 / 50, resamples=0)
@@ -179,13 +160,13 @@ def test_variations_of_the_same_motions_do_not_pretend_to_more_data() -> None:
 
 
 @pytest.mark.evidence("statistics and fragilities", "exact")
-def test_the_penalised_fit_is_the_maximum_of_its_objective() -> None:
+def test_the_penalised_fit_is_the_maximum_of_its_objective():
     x = np.linspace(-1.0, 1.0, 12)
     y = x > 0.2
     ones = np.ones((1, 12))
     found = probit_fit(x, y, ones, np.array([True]))
 
-    def objective(a: float, b: float) -> float:
+    def objective(a, b):
         eta = a + b * x
         p = np.array([0.5 * math.erfc(-e / math.sqrt(2.0)) for e in eta])
         density = np.exp(-0.5 * eta**2) / math.sqrt(2.0 * math.pi)
@@ -210,7 +191,7 @@ def test_the_penalised_fit_is_the_maximum_of_its_objective() -> None:
         ([1, 0, 1, 0], "does not grow"),
     ],
 )
-def test_hopeless_data_get_no_curve_but_a_reason(flags: list[int], note: str) -> None:
+def test_hopeless_data_get_no_curve_but_a_reason(flags, note):
     found = fit(np.array([0.5, 1.0, 1.5, 2.0]), np.array(flags, dtype=bool))
     assert found.method == "none"
     assert found.note is not None
@@ -218,7 +199,7 @@ def test_hopeless_data_get_no_curve_but_a_reason(flags: list[int], note: str) ->
     assert math.isnan(found.median)
 
 
-def test_bands_leave_out_bootstrap_samples_without_a_fit() -> None:
+def test_bands_leave_out_bootstrap_samples_without_a_fit():
     # A quarter of all samples has the second record twice, and thus one intensity alone.
     im, y = np.array([0.5, 1.0, 1.5, 2.0]), np.array([False, True, False, True])
     cluster = np.array([0, 0, 0, 1])
@@ -243,10 +224,8 @@ def test_bands_leave_out_bootstrap_samples_without_a_fit() -> None:
 MEASURED = ("scale: [0.5, 1.0]", "scale: {measure: PGV, values: [0.2, 0.4, 0.8]}")
 
 
-def test_overturned_points_exceed_every_limit_and_failed_ones_none(
-    study_of: Make,
-) -> None:
-    def answer(at: Place) -> Stored:
+def test_overturned_points_exceed_every_limit_and_failed_ones_none(study_of):
+    def answer(at):
         ratio = 0.9 if at["number"] % 2 else 0.1
         return (
             fallen(at["scale"] == 0.8, rotation_ratio=ratio) if at["number"] else BROKEN
@@ -288,12 +267,10 @@ def test_overturned_points_exceed_every_limit_and_failed_ones_none(
 
 
 @pytest.mark.parametrize(("one_in", "beyond"), [(5, True), (1, False)])
-def test_a_median_beyond_all_intensities_is_called_extrapolated(
-    study_of: Make, one_in: int, beyond: bool
-) -> None:
+def test_a_median_beyond_all_intensities_is_called_extrapolated(study_of, one_in, beyond):
     every = {0.2: 1000, 0.4: 7, 0.8: one_in}
 
-    def answer(at: Place) -> Stored:
+    def answer(at):
         high = at["number"] % every[at["scale"]] == 0 and at["scale"] > 0.2
         return stored(rotation_ratio=0.9 if high else 0.1)
 
@@ -315,7 +292,7 @@ scale: [0.2, 0.4]
 """
 
 
-def test_overturning_spectra_are_dimensionless(study_of: Make) -> None:
+def test_overturning_spectra_are_dimensionless(study_of):
     text = WITHOUT_RECORDS + PULSES.replace(", mine.txt", "")
     results = made(
         study_of, lambda at: fallen(at["scale"] > 0.3, scale=at["scale"]), text=text
@@ -328,16 +305,14 @@ def test_overturning_spectra_are_dimensionless(study_of: Make) -> None:
     # A sampled sine has its peak on a sample: the amplitude is exact to rounding.
     amplitudes = points["amplitude_over_g_tan_alpha"][:2]
     assert amplitudes == pytest.approx([0.2 / 0.10, 0.4 / 0.10], rel=1e-9)
-    drawn: Any = found.drawn("title")
+    drawn = found.drawn("title")
     (least,) = [
         line for line in drawn.axes[0].lines if line.get_label() == "least that overturns"
     ]
     assert least.get_ydata() == pytest.approx([4.0, 4.0], rel=1e-9)
 
 
-def test_a_file_has_its_place_in_a_spectrum_and_systems_share_the_axes(
-    study_of: Make,
-) -> None:
+def test_a_file_has_its_place_in_a_spectrum_and_systems_share_the_axes(study_of):
     lines = [f"{0.01 * i} {math.sin(math.pi * i / 40.0)}" for i in range(81)]
     Path("mine.txt").write_text(
         "# Time (s) Acceleration (m/s2)\n" + "\n".join(lines) + "\n"
@@ -363,7 +338,7 @@ def test_a_file_has_its_place_in_a_spectrum_and_systems_share_the_axes(
     assert amplitude == pytest.approx(0.4 / (9.80665 * 0.10), rel=1e-9)
     assert set(points["outcome"]) == {"survived"}
     alone = overturning_spectrum(results, SpectrumOptions(pulses={"mine.txt": pulse}))
-    drawn: Any = alone.drawn("title")
+    drawn = alone.drawn("title")
     assert [line.get_label() for line in drawn.axes[0].lines] == [
         "at rest",
         "least that overturns",

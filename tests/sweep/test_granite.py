@@ -1,15 +1,11 @@
 """The shaking-table tests of granite specimens, if the folder RPS_GRANITE has them."""
 
-from __future__ import annotations
-
 import importlib.util
 import math
 import os
 import re
 import shutil
 from pathlib import Path
-from types import ModuleType
-from typing import Any
 
 import numpy as np
 import pytest
@@ -17,13 +13,13 @@ from shown_commands import of_blocks, run_all, run_in_shell, table
 
 from rpscli.records.formats.at2 import at2_text
 from rpscli.records.ground_motion import GroundMotion
-from sweep.small_studies import ROOT, SweepJson, csv_rows
+from sweep.small_studies import ROOT, csv_rows
 
 CASES = ROOT / "cases" / "granite"
 
 
 @pytest.fixture(scope="module")
-def granite() -> Path:
+def granite():
     """The folder with half of the tests: `motions_even.npz`, `outcomes_even.csv` and `raw`."""
     folder = Path(os.environ.get("RPS_GRANITE", "nowhere"))
     if not (folder / "motions_even.npz").is_file():
@@ -31,7 +27,7 @@ def granite() -> Path:
     return folder
 
 
-def script(name: str) -> ModuleType:
+def script(name):
     specification = importlib.util.spec_from_file_location(name, CASES / f"{name}.py")
     assert specification is not None
     assert specification.loader is not None
@@ -41,11 +37,11 @@ def script(name: str) -> ModuleType:
 
 
 @pytest.fixture(scope="module")
-def convert() -> ModuleType:
+def convert():
     return script("convert")
 
 
-def test_a_threshold_counts_best_among_those_that_agree_as_well() -> None:
+def test_a_threshold_counts_best_among_those_that_agree_as_well():
     threshold, random = script("judged").threshold, np.random.default_rng(5)
     assert round(threshold(np.array([1.0, 2, 4, 8]), np.array([0, 0, 1, 1])), 3) == 2.828
     for _ in range(50):
@@ -63,19 +59,17 @@ def test_a_threshold_counts_best_among_those_that_agree_as_well() -> None:
         assert abs(chosen.sum() - over.sum()) == off
 
 
-def motions_of(granite: Path) -> dict[str, Any]:
+def motions_of(granite):
     with np.load(granite / "motions_even.npz") as file:
         return dict(file)
 
 
-def observed_rows(granite: Path) -> list[dict[str, str]]:
+def observed_rows(granite):
     return csv_rows("outcomes_even.csv", granite)
 
 
 @pytest.mark.evidence("free-standing blocks", "measured")
-def test_the_model_tells_more_outcomes_than_thresholds(
-    granite: Path, sweep_json: SweepJson, workplace: Path
-) -> None:
+def test_the_model_tells_more_outcomes_than_thresholds(granite, sweep_json, workplace):
     """With the slendernesses of the cases and single runs, over all tests of the folder."""
     motions, judged = motions_of(granite), script("judged")
     (workplace / "motions").mkdir()
@@ -125,9 +119,7 @@ reports: [comparison]
 
 
 @pytest.mark.long
-def test_the_readme_shows_what_its_commands_give(
-    granite: Path, convert: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_readme_shows_what_its_commands_give(granite, convert, tmp_path, monkeypatch):
     """The public folder is not here: its converter runs on two text files of it, and writes the
     motions of the others from the half that is at hand.
     """

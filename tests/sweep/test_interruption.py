@@ -1,7 +1,5 @@
 """Killed, interrupted, with one thread or two: the same bytes at the end, and their store."""
 
-from __future__ import annotations
-
 import json
 import os
 import shlex
@@ -11,13 +9,11 @@ import sqlite3
 import threading
 import time
 import warnings
-from collections.abc import Iterator
 from concurrent.futures import Executor, Future
 from contextlib import closing
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -38,10 +34,10 @@ from rpscli.sweep.evaluation import (
     run_batch,
 )
 from rpscli.sweep.points import lay_out, reproduction
-from rpscli.sweep.run import Engine, Progress, compute, run, start
+from rpscli.sweep.run import Engine, compute, run, start
 from rpscli.sweep.store import FILE, Store
 from rpscli.sweep.table import Table, points_csv
-from sweep.small_studies import BASE, FOLDER, STUDY, Make, Sweep, SweepJson, csv_rows
+from sweep.small_studies import BASE, FOLDER, STUDY, csv_rows
 
 POINTS = 36
 """Of the study; one thread computes them in batches of nine."""
@@ -50,7 +46,7 @@ CSV = "results/study/sweep/points.csv"
 
 
 @pytest.mark.posix
-def test_the_first_ctrl_c_drains_and_says_how_to_go_on(workplace: Path) -> None:
+def test_the_first_ctrl_c_drains_and_says_how_to_go_on(workplace):
     """Runs that are killed: tests/hunt/test_hostile_edges.py."""
     study = ("sweep", "study.yaml", "--jobs", "1", "--json")
     program = str(Path(__file__).with_name("interrupted.py"))
@@ -67,19 +63,17 @@ def test_the_first_ctrl_c_drains_and_says_how_to_go_on(workplace: Path) -> None:
 
 
 @pytest.mark.posix
-def test_the_second_ctrl_c_stops_at_once(
-    study_of: Make, workplace: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_second_ctrl_c_stops_at_once(study_of, workplace, monkeypatch):
     layout = lay_out(study_of())
-    told: list[str] = []
+    told = []
     over = threading.Event()
 
-    def one_batch(context: Any, points: Any) -> PointResults:
+    def one_batch(context, points):
         if points[0].number:
             over.wait()
         return run_batch(context, points)
 
-    def interrupt(progress: Progress) -> None:
+    def interrupt(progress):
         os.kill(os.getpid(), signal.SIGINT)
         told.append("first")
         os.kill(os.getpid(), signal.SIGINT)
@@ -97,13 +91,11 @@ def test_the_second_ctrl_c_stops_at_once(
 
 
 @pytest.mark.posix
-def test_a_ctrl_c_given_to_another_thread_is_heard(
-    study_of: Make, workplace: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_ctrl_c_given_to_another_thread_is_heard(study_of, workplace, monkeypatch):
     layout = lay_out(study_of())
     heard = threading.Event()
 
-    def one_batch(context: Any, points: Any) -> PointResults:
+    def one_batch(context, points):
         time.sleep(0.5)  # until the main thread waits
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
         os.kill(
@@ -125,7 +117,7 @@ def test_a_ctrl_c_given_to_another_thread_is_heard(
     assert (finish.computed, len(begin.pending)) == (9, POINTS)
 
 
-def test_equal_points_are_computed_once(study_of: Make, workplace: Path) -> None:
+def test_equal_points_are_computed_once(study_of, workplace):
     layout = lay_out(study_of(STUDY, ("[0.5, 1.0]", "[1.0, 1.0]")))
     with Store(workplace) as store:
         begin = start(layout, store)
@@ -138,7 +130,7 @@ def test_equal_points_are_computed_once(study_of: Make, workplace: Path) -> None
     assert MISSING not in found.outcomes
 
 
-def test_a_second_run_computes_nothing(sweep_json: SweepJson, workplace: Path) -> None:
+def test_a_second_run_computes_nothing(sweep_json, workplace):
     """Nor does it change a byte; nor does all that is computed anew, in two threads."""
     csv = workplace / CSV
     first = sweep_json("study.yaml", "--jobs", "1")
@@ -152,9 +144,7 @@ def test_a_second_run_computes_nothing(sweep_json: SweepJson, workplace: Path) -
     assert csv.read_bytes() == text
 
 
-def test_a_changed_study_keeps_what_applies_and_says_what_changed(
-    sweep_json: SweepJson,
-) -> None:
+def test_a_changed_study_keeps_what_applies_and_says_what_changed(sweep_json):
     sweep_json("study.yaml")
     text = STUDY.replace("critical, 0.5, 0]", "critical, 1.5]").replace("Test", "Renamed")
     changed = sweep_json("study.yaml", study=text)
@@ -177,7 +167,7 @@ def test_a_changed_study_keeps_what_applies_and_says_what_changed(
     assert "base.superstructure.damping.ratio: 0.05 -> 0.04" in " ".join(changed["notes"])
 
 
-def test_the_folder_of_another_study_is_refused(sweep: Sweep, workplace: Path) -> None:
+def test_the_folder_of_another_study_is_refused(sweep, workplace):
     assert sweep("study.yaml", "-o", "there").exit_code == 0
     other = STUDY.replace("scale: [0.5, 1.0]", "scale: [2]")
     (workplace / "other.yaml").write_text(other)
@@ -187,7 +177,7 @@ def test_the_folder_of_another_study_is_refused(sweep: Sweep, workplace: Path) -
     assert sweep("other.yaml", "-o", "there", "--fresh").exit_code == 0
 
 
-def test_report_only_computes_nothing(sweep: Sweep, workplace: Path) -> None:
+def test_report_only_computes_nothing(sweep, workplace):
     lacking = sweep("study.yaml", "--report-only")
     assert lacking.exit_code == 7
     assert "lacks 36 of 36 points, which `rps sweep` computes" in lacking.stderr
@@ -198,14 +188,14 @@ def test_report_only_computes_nothing(sweep: Sweep, workplace: Path) -> None:
         assert (workplace / FOLDER / name).exists()
 
 
-def test_options_that_contradict_each_other_are_refused(sweep: Sweep) -> None:
+def test_options_that_contradict_each_other_are_refused(sweep):
     for options in (("--fresh",), ("--retry-failed",), ("--scheduler", "tcp://x:1")):
         assert sweep("study.yaml", "--report-only", *options).exit_code == 2
     assert sweep("study.yaml", "--jobs", "2", "--scheduler", "tcp://x:1").exit_code == 2
 
 
 @pytest.fixture
-def spoilt(workplace: Path) -> Path:
+def spoilt(workplace):
     """A study of two record files, one of which cannot be read."""
     motion = load_record("synthetic:?pga=0.4g&seed=1&duration=3&dt=0.02")
     (workplace / "good.at2").write_text(at2_text(motion))
@@ -220,7 +210,7 @@ def spoilt(workplace: Path) -> Path:
     return workplace
 
 
-def test_the_rest_goes_on(spoilt: Path, sweep_json: SweepJson) -> None:
+def test_the_rest_goes_on(spoilt, sweep_json):
     document = sweep_json("study.yaml", exit_code=5)
     assert document["status"] == "error"
     assert document["points"]["failed"] == document["outcomes"]["failed"] == 12
@@ -234,9 +224,7 @@ def test_the_rest_goes_on(spoilt: Path, sweep_json: SweepJson) -> None:
     assert {(row["counted [-]"], row["failed [-]"]) for row in shares} == {("3", "3")}
 
 
-def test_each_failure_has_a_command_that_reproduces_it(
-    spoilt: Path, sweep_json: SweepJson
-) -> None:
+def test_each_failure_has_a_command_that_reproduces_it(spoilt, sweep_json):
     """A case inside the study is written for it, from Python as well."""
     for inside in (False, True):
         text = (spoilt / "study.yaml").read_text()
@@ -263,7 +251,7 @@ def test_each_failure_has_a_command_that_reproduces_it(
     assert {name: (FOLDER / name).read_bytes() for name in files} == files
 
 
-def test_the_command_of_a_good_point_gives_its_numbers(spoilt: Path) -> None:
+def test_the_command_of_a_good_point_gives_its_numbers(spoilt):
     overrides = ("perturb={members: 3}", "podium.cap_beam_mass_ratio=8")
     layout = load_study("study.yaml", overrides).layout
     point = layout[2]
@@ -275,7 +263,7 @@ def test_the_command_of_a_good_point_gives_its_numbers(spoilt: Path) -> None:
     assert found["record"]["scale"] == row["scale"][0]
 
 
-def test_failed_points_are_tried_again(spoilt: Path, sweep_json: SweepJson) -> None:
+def test_failed_points_are_tried_again(spoilt, sweep_json):
     sweep_json("study.yaml", exit_code=5)
     kept = sweep_json("study.yaml", exit_code=5)
     assert (kept["points"]["computed"], kept["points"]["failed"]) == (0, 12)
@@ -289,7 +277,7 @@ def test_failed_points_are_tried_again(spoilt: Path, sweep_json: SweepJson) -> N
     assert not (spoilt / FOLDER / "failed.csv").exists()
 
 
-def test_components_of_two_time_steps_fail(sweep: Sweep) -> None:
+def test_components_of_two_time_steps_fail(sweep):
     vertical = "synthetic:?pga=0.3g&duration=4&dt=0.01&seed=2"
     record = {
         "source": "synthetic:?pga=0.5g&duration=4&dt=0.02&seed=1",
@@ -306,11 +294,11 @@ def test_components_of_two_time_steps_fail(sweep: Sweep) -> None:
     assert f"--vertical '{vertical}'" in refused.stderr
 
 
-def key(number: int) -> bytes:
+def key(number):
     return bytes([number] * 32)
 
 
-def batch(*numbers: int, failed: bool = False) -> tuple[list[bytes], PointResults]:
+def batch(*numbers, failed=False):
     """Points that survived, or failed."""
     values = np.full(len(numbers), np.nan) if failed else 0.1 * np.array(numbers)
     outcomes = np.array(["failed" if failed else "survived"] * len(numbers), dtype="U20")
@@ -319,7 +307,7 @@ def batch(*numbers: int, failed: bool = False) -> tuple[list[bytes], PointResult
     return list(map(key, numbers)), PointResults(outcomes, messages, columns)
 
 
-def rows(store: Store, *numbers: int) -> list[Any]:
+def rows(store, *numbers):
     """Outcome, message, x and the second of the list of some points."""
     found = store.results(list(map(key, numbers)), ["x", "list.1", "unknown"])
     nothing = np.full(len(numbers), np.nan)
@@ -329,7 +317,7 @@ def rows(store: Store, *numbers: int) -> list[Any]:
     return [repr(row) for row in zip(found.outcomes.tolist(), told, x, last, strict=True)]
 
 
-def test_what_is_stored_is_there_after_reopening(tmp_path: Path) -> None:
+def test_what_is_stored_is_there_after_reopening(tmp_path):
     with Store(tmp_path) as store:
         store.add(*batch(1, 3))
         store.add(*batch(2, failed=True))
@@ -349,13 +337,13 @@ def test_what_is_stored_is_there_after_reopening(tmp_path: Path) -> None:
         assert rows(store, 2) == ["('failed', 'why', nan, nan)"]
 
 
-def test_a_second_process_is_refused(tmp_path: Path) -> None:
+def test_a_second_process_is_refused(tmp_path):
     for fresh in (False, True):
         with Store(tmp_path), pytest.raises(Refused, match=r"in use.*-o"):
             Store(tmp_path, fresh=fresh).__enter__()
 
 
-def test_fresh_begins_anew_even_where_the_file_is_damaged(tmp_path: Path) -> None:
+def test_fresh_begins_anew_even_where_the_file_is_damaged(tmp_path):
     with Store(tmp_path) as store:
         store.add(*batch(*range(200)))
     with Store(tmp_path, fresh=True) as store:
@@ -372,9 +360,7 @@ def test_fresh_begins_anew_even_where_the_file_is_damaged(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("what", ["file", "folder", "other"])
-def test_a_store_that_is_deleted_while_it_is_used_is_told(
-    tmp_path: Path, what: str
-) -> None:
+def test_a_store_that_is_deleted_while_it_is_used_is_told(tmp_path, what):
     folder = tmp_path / "o"
     with Store(folder) as store:
         store.add(*batch(1))
@@ -391,7 +377,7 @@ def test_a_store_that_is_deleted_while_it_is_used_is_told(
             store.require()
 
 
-def test_files_of_others_are_left_alone(tmp_path: Path) -> None:
+def test_files_of_others_are_left_alone(tmp_path):
     with closing(sqlite3.connect(tmp_path / FILE)) as db:
         db.execute("CREATE TABLE mine (x)")
     whole = (tmp_path / FILE).read_bytes()
@@ -405,7 +391,7 @@ def test_files_of_others_are_left_alone(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("version", "told"), [(0, "before 4"), (5, "5")])
-def test_another_format_is_refused(tmp_path: Path, version: int, told: str) -> None:
+def test_another_format_is_refused(tmp_path, version, told):
     with Store(tmp_path) as store:
         store.note(study="a")
     with closing(sqlite3.connect(tmp_path / FILE)) as db:
@@ -416,7 +402,7 @@ def test_another_format_is_refused(tmp_path: Path, version: int, told: str) -> N
         assert store.facts() == {}
 
 
-def test_a_full_disk_is_told_and_what_was_stored_stays(tmp_path: Path) -> None:
+def test_a_full_disk_is_told_and_what_was_stored_stays(tmp_path):
     with Store(tmp_path) as store:
         store.add(*batch(1))
         # SQLite reports a limit on its pages as a full disk.
@@ -430,7 +416,7 @@ PACKAGE = Path(rpscli.__file__).parent
 
 
 @pytest.fixture(scope="module")
-def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def package(tmp_path_factory):
     """A copy of the sources."""
     copy = tmp_path_factory.mktemp("sources") / "rpscli"
     shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
@@ -438,7 +424,7 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("name", SOLVING)
-def test_a_changed_source_changes_the_digest(package: Path, name: str) -> None:
+def test_a_changed_source_changes_the_digest(package, name):
     place = package / name
     sources = [place] if place.is_file() else sorted(place.rglob("*.py"))
     assert sources, "every name stands for a source"
@@ -451,7 +437,7 @@ def test_a_changed_source_changes_the_digest(package: Path, name: str) -> None:
     assert digest_of_sources(package) == before
 
 
-def test_every_module_behind_a_stored_number_counts() -> None:
+def test_every_module_behind_a_stored_number_counts():
     code = "import sys, rpscli.sweep.evaluation; "
     code += (
         "print(*(m.__file__ for n, m in sys.modules.items() if n.startswith('rpscli.')))"
@@ -471,12 +457,12 @@ RECORDS = ("seed: [1, 2, 3]", "seed: {low: 1, high: 16, count: 16}")
 
 
 @pytest.fixture(scope="module")
-def distributed() -> Any:
+def distributed():
     return pytest.importorskip("distributed")
 
 
 @pytest.fixture(scope="module")
-def scheduler(distributed: Any) -> Iterator[str]:
+def scheduler(distributed):
     """Address of a cluster of two worker processes, which are replaced when they die."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # sockets of the worker that is killed
@@ -487,16 +473,14 @@ def scheduler(distributed: Any) -> Iterator[str]:
 
 
 @pytest.mark.posix
-def test_a_killed_worker_changes_no_byte(
-    study_of: Make, workplace: Path, distributed: Any, scheduler: str
-) -> None:
+def test_a_killed_worker_changes_no_byte(study_of, workplace, distributed, scheduler):
     layout = lay_out(study_of(STUDY, RECORDS))
     client = distributed.Client(scheduler, set_as_default=False)
     workers = list(client.run(os.getpid).values())
     client.close()
-    killed: list[int] = []
+    killed = []
 
-    def kill_one(progress: Progress) -> None:
+    def kill_one(progress):
         if not killed:
             os.kill(workers[0], signal.SIGKILL)
             killed.append(workers[0])
@@ -514,24 +498,22 @@ def test_a_killed_worker_changes_no_byte(
     assert texts[0] == texts[1]
 
 
-def test_a_worker_of_another_version_is_refused(study_of: Make) -> None:
+def test_a_worker_of_another_version_is_refused(study_of):
     other = replace(lay_out(study_of()).plan, solver="another")
     with pytest.raises(RpsError, match="same version"):
         compute("digest", other, [])
 
 
-def test_points_that_kill_every_worker_come_back_failed(
-    study_of: Make, distributed: Any
-) -> None:
+def test_points_that_kill_every_worker_come_back_failed(study_of, distributed):
     layout = lay_out(study_of())
     engine = Engine(layout.context, 1)
-    tried: list[list[int]] = []
+    tried = []
 
     class Deadly(Executor):
         """A cluster on which the first point takes its workers with it."""
 
-        def submit(self, work: Any, /, *inputs: Any, **_: Any) -> Future[Any]:
-            future: Future[Any] = Future()
+        def submit(self, work, /, *inputs, **_):
+            future = Future()
             tried.append([point.number for point in inputs[-1]])
             if 0 in tried[-1]:
                 future.set_exception(distributed.KilledWorker("task", None, 3))
@@ -550,8 +532,54 @@ def test_points_that_kill_every_worker_come_back_failed(
     assert found[1].messages == {}
 
 
+@pytest.mark.long
+@pytest.mark.posix
+@pytest.mark.xfail(
+    strict=False,
+    reason="Dask counts a death against all tasks that the worker held: a sound point that was"
+    " sent to the same worker, as retries of a batch are, may come back failed too",
+)
+def test_a_point_that_ends_its_process_is_told_and_the_others_come(
+    sweep_json, workplace, distributed, scheduler
+):
+    """Through the option, on a cluster whose workers really die, four of them for each task."""
+
+    class Deadly(distributed.WorkerPlugin):
+        """What each worker begins with: the first point ends its process."""
+
+        def setup(self, **_):
+            from rpscli.sweep import run
+
+            self.whole = run.run_batch
+
+            def run_batch(context, points):
+                if any(point.number == 0 for point in points):
+                    os._exit(1)
+                return self.whole(context, points)
+
+            run.run_batch = run_batch
+
+        def teardown(self, **_):
+            from rpscli.sweep import run
+
+            run.run_batch = self.whole
+
+    few = STUDY.replace("[critical, 0.5, 0]", "[0.5]").replace("[1, 2, 3]", "[1]")
+    with distributed.Client(scheduler, set_as_default=False) as client:
+        client.register_plugin(Deadly(), name="deadly")
+        words = ("study.yaml", "--scheduler", scheduler, "--figures", "none")
+        document = sweep_json(
+            *words, study=few.replace("[0.5, 1.0]", "[1.0]"), exit_code=5
+        )
+        client.unregister_worker_plugin("deadly")
+    assert document["points"]["failed"] == 1
+    first, second = csv_rows("points.csv")
+    assert first["outcome [-]"] == "failed"
+    assert second["outcome [-]"] in {"survived", "overturned"}
+
+
 @pytest.mark.usefixtures("distributed")
-def test_no_scheduler_is_told(study_of: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_scheduler_is_told(study_of, monkeypatch):
     monkeypatch.setattr("rpscli.sweep.run.PATIENCE", 0.3)
     with pytest.raises(UsageError, match="no Dask scheduler"):
         Engine(lay_out(study_of()).context, 1, "tcp://127.0.0.1:9")

@@ -1,11 +1,8 @@
 """Annual rates against the closed form for a power law, quadrature, and the worst of input."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -31,11 +28,6 @@ from rpscli.sweep.statistics.summary import summary
 from rpscli.sweep.statistics.verdicts import judged
 from sweep.small_studies import (
     STUDY,
-    Make,
-    Place,
-    Stored,
-    Sweep,
-    SweepJson,
     csv_rows,
     fallen,
     made,
@@ -50,7 +42,7 @@ HEADER = "PGV [cm/s],rate [1/year]\n"
 @pytest.mark.evidence("risk", "exact")
 @pytest.mark.parametrize("slope", [0.0, 1.0, 2.5, 4.0])
 @pytest.mark.parametrize("beta", [1e-3, 0.3, 0.6, 1.5])
-def test_a_power_law_gives_the_closed_form(slope: float, beta: float) -> None:
+def test_a_power_law_gives_the_closed_form(slope, beta):
     """Two points far apart are a power law throughout: H(median) exp(k^2 beta^2 / 2)."""
     median, ends = 0.7, np.array([1e-40, 1e40])
     hazard = Hazard(ends, 2e-4 * (ends / median) ** -slope)
@@ -63,16 +55,16 @@ def test_a_power_law_gives_the_closed_form(slope: float, beta: float) -> None:
 @pytest.mark.parametrize(
     ("median", "beta"), [(0.5, 0.4), (0.15, 0.7), (3.0, 0.2), (0.8, 0.02)]
 )
-def test_any_curve_gives_what_quadrature_gives(median: float, beta: float) -> None:
+def test_any_curve_gives_what_quadrature_gives(median, beta):
     x, y = np.log(KINKED.intensity), np.log(KINKED.rate)
     slopes = -np.diff(y) / np.diff(x)
 
-    def density(at: float) -> float:
+    def density(at):
         piece = min(int(np.searchsorted(x, at, side="right")) - 1, len(slopes) - 1)
         rate = math.exp(y[piece] - slopes[piece] * (at - x[piece]))
         return float(ndtr((at - math.log(median)) / beta) * slopes[piece] * rate)
 
-    def above(intensity: float) -> float:
+    def above(intensity):
         low, top = math.log(intensity), math.log(1.6) + 12.0
         middle = math.log(median)
         breaks = [*x[1:], *(middle + beta * step for step in (-6, -2, 0, 2, 6))]
@@ -88,7 +80,7 @@ def test_any_curve_gives_what_quadrature_gives(median: float, beta: float) -> No
 
 
 @pytest.mark.evidence("risk", "exact")
-def test_a_fragility_without_spread_has_the_rate_of_its_median() -> None:
+def test_a_fragility_without_spread_has_the_rate_of_its_median():
     """Nor is a spread too wide, as bootstrap samples have: no rate exceeds the first of all."""
     assert annual_rate(KINKED, 0.4, 1e-9) == pytest.approx(2e-3, rel=1e-6)
     for beta in (20.0, 1e3, 1e8):
@@ -96,7 +88,7 @@ def test_a_fragility_without_spread_has_the_rate_of_its_median() -> None:
 
 
 @pytest.mark.evidence("risk", "exact")
-def test_a_rate_straight_from_shares_is_what_quadrature_gives() -> None:
+def test_a_rate_straight_from_shares_is_what_quadrature_gives():
     """Shares between levels are linear in ln(im), and stay outside as they are at the ends."""
     levels, shares = (
         np.array([0.15, 0.3, 0.5, 2.0, 3.0]),
@@ -124,9 +116,7 @@ def test_a_rate_straight_from_shares_is_what_quadrature_gives() -> None:
     )  # up to 0.5 no motion is counted, from there on all
 
 
-def test_a_study_judges_the_annual_rate_of_each_system(
-    study_of: Make, tmp_path: Path
-) -> None:
+def test_a_study_judges_the_annual_rate_of_each_system(study_of, tmp_path):
     """None, one and all of three records overturn at 0.3, 0.6 and 1.2 m/s; H = 1e-3 / PGV.
 
     Between levels the mean of H over ln(PGV) is its difference over ln 2.
@@ -135,7 +125,7 @@ def test_a_study_judges_the_annual_rate_of_each_system(
     scale = "scale: {measure: PGV, values: [1.2, 0.3, 0.6]}\nhazard: {file: hazard.csv,"
     scale += " measure: PGV}\nlimits: {annual_rate: 1.5e-3}"
 
-    def answer(at: Place) -> Stored:
+    def answer(at):
         """All systems but the first, of nine points."""
         return fallen(
             at["scale"] > (0.5, 1.0, 1.0)[at["record"] - 1] and at["number"] >= 9
@@ -159,16 +149,14 @@ def test_a_study_judges_the_annual_rate_of_each_system(
     assert (line[:33], len(lines)) == ("limit not shown to be met: annual", 6)
 
 
-def test_rates_of_the_motion_are_those_of_the_curve() -> None:
+def test_rates_of_the_motion_are_those_of_the_curve():
     found = exceeded(KINKED, np.array([0.1, 0.2, math.sqrt(0.08), 1.6, 3.2]))
     expected = [3e-2, 1e-2, math.sqrt(1e-2 * 2e-3), 3e-5, 3e-6]
     assert found == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize("zeros", [0, 2])
-def test_units_comments_and_rates_of_zero_of_a_hazard_file(
-    tmp_path: Path, zeros: int
-) -> None:
+def test_units_comments_and_rates_of_zero_of_a_hazard_file(tmp_path, zeros):
     path = tmp_path / "hazard.csv"
     text = f"# a remark, with a comma\n{HEADER}10,0.1\n\n20, 0.01\n" + "40,0.0\n" * zeros
     path.write_text(text, encoding="utf-8")
@@ -205,9 +193,7 @@ def test_units_comments_and_rates_of_zero_of_a_hazard_file(
         (HEADER + "10,0.1,3\n20,1\n", (":2:", "two numbers > 0")),
     ],
 )
-def test_hazard_files_that_are_refused(
-    text: str, parts: tuple[str, ...], tmp_path: Path
-) -> None:
+def test_hazard_files_that_are_refused(text, parts, tmp_path):
     path = tmp_path / "hazard.csv"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(CaseError) as refused:
@@ -221,16 +207,13 @@ MEASURED = STUDY.replace(
 )
 
 
-def with_risk(options: str, hazard: str) -> str:
+def with_risk(options, hazard):
     """The study with this report, beside its hazard curve."""
     Path("hazard.csv").write_text(hazard, encoding="utf-8")
     return f"{MEASURED}reports:\n  - risk: {options}\n"
 
 
-Rows = list[dict[str, Any]]
-
-
-def shows_contributions(figure: Any, written: Rows, parts: Rows) -> None:
+def shows_contributions(figure, written, parts):
     """Require that a figure shows the rates of one file and their parts of another."""
     labelled(figure, "PGV [m/s]", "share of the annual rate [%]")
     words = " ".join(figure.get_suptitle().split())
@@ -263,7 +246,7 @@ def shows_contributions(figure: Any, written: Rows, parts: Rows) -> None:
         same(axes.get_xlim()[1], 1.1 * 1.4 * edges[-1])
 
 
-def are_margins(known: Rows, margins: Rows) -> None:
+def are_margins(known, margins):
     """Require the margins of the rates: by 0.6 m/s and a spectral shape of 1.2."""
     for row, margin in zip(known, margins, strict=True):
         cmr = row["median"] / 0.6
@@ -283,8 +266,8 @@ def are_margins(known: Rows, margins: Rows) -> None:
 
 @pytest.mark.evidence("risk", "published")
 def test_rates_margins_and_dispersions_are_those_of_fema_p695(
-    workplace: Path, sweep_json: SweepJson, sweep: Sweep, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    workplace, sweep_json, sweep, monkeypatch
+):
     options = (
         "{hazard: {file: hazard.csv, measure: PGV, component: component}, at: {MCE: 60 cm/s},"
         " spectral_shape: 1.2, resamples: 50, limits: {rotation_ratio: 0.2},"
@@ -358,9 +341,7 @@ def test_rates_margins_and_dispersions_are_those_of_fema_p695(
         ("{limits: {rotation_ratio: 0.2}}", ("hazard",)),
     ],
 )
-def test_a_risk_needs_a_hazard(
-    options: str, parts: tuple[str, ...], sweep: Sweep
-) -> None:
+def test_a_risk_needs_a_hazard(options, parts, sweep):
     result = sweep(
         "study.yaml", "--dry-run", study=with_risk(options, HEADER + "1,1\n10,0.1\n")
     )

