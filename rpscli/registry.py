@@ -188,17 +188,13 @@ def _sound(value: Any, kind: Any, name: str, what: str) -> Any:
     """A value of the kind that an annotation names; its
     functions give what theirs say.
     """
-    if kind in (
-        None,
-        type(None),
-    ):  # of functions that give nothing, such as those that draw
-        return None
     origin = origin_of(kind)
     kinds = get_args(kind)
     if origin is Callable and callable(value):
         return _guarded(value, kinds[-1], what)
-    if type(None) in kinds:
-        return None if value is None else _sound(value, kinds[0], name, what)
+    if kind is None or type(None) in (kind, *kinds):
+        # Functions that draw give nothing.
+        return None if value is None or not kinds else _sound(value, kinds[0], name, what)
     if origin is bool or (origin is float and is_number(value)):
         return origin(value)
     if origin is Iterable:

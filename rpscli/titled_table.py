@@ -82,6 +82,23 @@ def titled_table(
     With `remarks` lines that begin with # are left out. Raises `fault` for a quote that is
     not closed, and for titles that stand twice.
     """
+    rows = _rows(text, source, fault, remarks=remarks)
+    if not rows:
+        return TitledTable(f"{source}", 1, (), ())
+    first, *rest = rows
+    titles = tuple(map(_title, first.cells))
+    filled = (
+        Row(line, cells + [""] * (len(titles) - len(cells))) for line, cells in rest
+    )
+    return TitledTable(
+        f"{source}", first.line, titles, tuple(filled), beginning(",".join(first.cells))
+    )
+
+
+def _rows(
+    text: str, source: str | Path, fault: type[RpsError], *, remarks: bool
+) -> list[Row]:
+    """Rows that are not empty, that of the titles among them."""
     lines = text.removeprefix("\ufeff").splitlines()
     skipped = 0
     separator = ""
@@ -111,16 +128,7 @@ def titled_table(
         raise fault(
             f"{source}:{line}: is not CSV: {error}; is a quote not closed?"
         ) from None
-    if not rows:
-        return TitledTable(f"{source}", 1, (), ())
-    first, *rest = rows
-    titles = tuple(map(_title, first.cells))
-    filled = (
-        Row(line, cells + [""] * (len(titles) - len(cells))) for line, cells in rest
-    )
-    return TitledTable(
-        f"{source}", first.line, titles, tuple(filled), beginning(",".join(first.cells))
-    )
+    return rows
 
 
 def _separator_of(head: str) -> str:

@@ -104,8 +104,7 @@ def profile_stiffnesses(
     period
         T_1 of the building on a fixed base [s].
     profile
-        ``sine`` (the usual one, sin(pi i/2n)), ``linear`` or ``flexural`` first mode, or
-        ``uniform`` stiffness.
+        First mode ``sine``, sin(pi i/2n), ``linear``, ``flexural``; stiffness ``uniform``.
 
     Returns
     -------

@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any
 
 from rpscli.constants import STANDARD_GRAVITY
-from rpscli.records.formats.record_text import remark
+from rpscli.records.formats.statements import remark
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures import (
     IntensityMeasures,

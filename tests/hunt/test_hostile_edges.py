@@ -19,9 +19,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from commands.test_identify import FRAME
 from paper_structures import needs_compiled_kernels
 from sweep.small_studies import BASE, STUDY
+from tools.identify.test_identify_command import FRAME
 
 from hunt.trials import PROMISED, hunt, judged, mutated, shares
 from rpscli import registry

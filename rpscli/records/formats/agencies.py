@@ -13,14 +13,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from rpscli.records.formats.record_text import (
-    MOST_VALUES,
-    Channel,
-    RecordText,
-    Stated,
-    Statement,
-    statements,
-)
+from rpscli.records.formats.record_text import MOST_VALUES, Channel, RecordText, Stated
+from rpscli.records.formats.statements import Statement, statements
 from rpscli.records.ground_motion import GroundMotion, Recording
 from rpscli.records.quantities import NUMBER_PATTERN, UNIT_PATTERN
 

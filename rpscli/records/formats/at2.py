@@ -11,15 +11,14 @@ from __future__ import annotations
 import re
 
 from rpscli.constants import STANDARD_GRAVITY
-from rpscli.records.formats.record_text import (
+from rpscli.records.formats.record_text import Channel, RecordText, Stated
+from rpscli.records.formats.statements import (
     STATED_PATTERN,
     STEP_PATTERN,
-    Channel,
-    RecordText,
-    Stated,
     Statement,
     remark,
     statements,
+    whole_number,
 )
 from rpscli.records.ground_motion import UNKNOWN, GroundMotion, Recording
 from rpscli.records.quantities import NUMBER_PATTERN, UNIT_PATTERN, last_digit, numbers_in
@@ -162,23 +161,15 @@ def _stated(
         if not _BOTH.search(line):
             counts += statements("NPTS", _COUNT_GIVEN, [(index, line)])
             steps += statements("DT", _STEP_GIVEN, [(index, line)])
-    # The line of the units stands next to that of NPTS: titles above may mention other
-    # units.
-    units: list[Statement] = []
-    for index, line in reversed([*enumerate(text.heads[:start])]):
-        if spelling := (_UNITS_DECLARED if units else _UNITS).search(line):
-            units.insert(0, Statement("UNITS", spelling[1], index))
-        elif not units and _UNITS_LINE.search(line):
-            units.append(Statement("the header", line, index))  # which names none
     heads = [*enumerate(text.heads[:start])]
     text.refuse_multiples(heads, _UNITS.pattern)
-    unit = text.unit(units)
+    unit = text.unit(_units(heads))
     text.agreed(counts, text.count)
     text.agreed(text.understood_steps(steps), text.step)
     # 1/256 s is printed as .0039 by PEER: a whole rate that prints the same, but is not
     # the same.
     step = text.step(dt)
-    numeral = dt.value.partition(" ")[0]
+    numeral = whole_number(dt.value).partition(" ")[0]
     resolution = last_digit(numeral) * step / text.number(dt._replace(value=numeral))
     peak = next(iter(statements("the peak", _PEAK, heads)), None)
     recording = _recording(_title(text, npts))
@@ -192,6 +183,19 @@ def _stated(
         f" taken as printed, times may be off by {50.0 * resolution / step:.1g} %; if it"
         f" is 1/{rate} s, say ?dt={1.0 / rate:.9g}"
     )
+
+
+def _units(heads: list[tuple[int, str]]) -> list[Statement]:
+    """Statements of the unit: titles above the line of NPTS may mention other units, and
+    that next to it decides.
+    """
+    units: list[Statement] = []
+    for index, line in reversed(heads):
+        if spelling := (_UNITS_DECLARED if units else _UNITS).search(line):
+            units.insert(0, Statement("UNITS", spelling[1], index))
+        elif not units and _UNITS_LINE.search(line):
+            units.append(Statement("the header", line, index))  # which names none
+    return units
 
 
 _VALUES_PER_LINE = 5

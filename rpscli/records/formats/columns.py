@@ -19,16 +19,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.records.formats.record_text import (
-    STEP_PATTERN,
     Array,
     Channel,
     RecordText,
     Stated,
-    Statement,
     printed_resolution,
-    statements,
     uniform_step,
 )
+from rpscli.records.formats.statements import STEP_PATTERN, Statement, statements
 from rpscli.records.formats.titles import (
     ACCELERATION,
     ANY_UNIT,

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.errors import RecordError, stem_of
+from rpscli.records.formats.statements import Statement, unit_behind, whole_number
 from rpscli.records.ground_motion import UNKNOWN, GroundMotion, Recording
 from rpscli.records.quantities import (
     ACCELERATIONS,
@@ -31,18 +32,6 @@ from rpscli.records.source import Source
 
 Array = NDArray[np.float64]
 Meant = TypeVar("Meant")
-
-STATED_PATTERN = rf"{NUMBER_PATTERN}(?:,[0-9]+)?"
-"""A number as a header states it; one with a decimal comma is then refused by name."""
-
-_POWER = r"(?:\s*[x×*·]\s*10\s*(?:\^|\*\*)\s*[({]?[-+−]?[0-9]+[)}]?|\s*/\s*[0-9.]+)"
-STEP_PATTERN = (
-    r"\s*(?:[\[(]\s*([A-Za-z]+)\.?\s*[\])])?\s*[=:]?\s*"
-    rf"({STATED_PATTERN}[.0-9]*{_POWER}?)"
-    r"\s*[\[(]?\s*((?!(?:dt|npts)\b)[A-Za-z]+\b(?!\s*[=:]))?"
-)
-"""The words behind the name of a time step: a unit in brackets, the number, perhaps times
-a power of ten or as a fraction, a unit behind it, also in brackets."""
 
 _BEHIND_A_UNIT = re.compile(
     r"\s*[\])]?\s*(?:$|[,;.:|#]|[(\[][^)\]0-9]*[)\]]|[A-Za-z_]+[\w\s.]{0,20}[=:]|-\s*[A-Za-z])"
@@ -80,16 +69,6 @@ _HEADER_WIDTH = 1000  # letters
 _LARGEST_FILE = 200_000_000  # bytes; a day at a hundred samples a second has a tenth
 _SHORTEST_STEP = 1e-6  # s
 _LONGEST_STEP = 0.5
-
-
-class Statement(NamedTuple):
-    """One thing that a header says: its name, its value as
-    printed, the line (from zero).
-    """
-
-    name: str
-    value: str
-    line: int
 
 
 class Channel(NamedTuple):
@@ -282,7 +261,7 @@ class RecordText:
         """The time step that a header states [s]: its number, and
         perhaps a unit behind it.
         """
-        number, _, unit = _whole_number(stated.value).partition(" ")
+        number, _, unit = whole_number(stated.value).partition(" ")
         value = self.number(stated._replace(value=number), positive=True)
         factor = self.time_factor(unit, stated.line)
         return value if factor == 1.0 else float(f"{factor * value:.15g}")
@@ -291,7 +270,7 @@ class RecordText:
         """Statements of the step; where the user gives it, only those that are clear."""
         if self.dt is None:
             return [*said]
-        return [each for each in said if _unit_behind(each.value) in _TIME_UNITS]
+        return [each for each in said if unit_behind(each.value) in _TIME_UNITS]
 
     def refuse_multiples(self, lines: Sequence[tuple[int, str]], key: str) -> None:
         """Refuse a factor on the values, unless the user says what a value is."""
@@ -439,67 +418,6 @@ class RecordText:
             values * factor, dt, name or self.name, self.source, form, words, doubts,
             stated.recording,
         )  # fmt: skip
-
-
-def _unit_behind(value: str) -> str:
-    return value.partition(" ")[2].strip(" .").lower()
-
-
-def _whole_number(value: str) -> str:
-    """A stated number with its power of ten or as a fraction as one number, and its unit.
-
-    >>> _whole_number("5 x 10^-3 s"), _whole_number("1/200"), _whole_number("0.01 sec")
-    ('0.005 s', '0.005', '0.01 sec')
-    """
-    match = _WHOLE.fullmatch(value.strip())
-    if match is None:
-        return value
-    number, power, below, unit = match.groups()
-    if power:
-        number = f"{to_float(number) * 10.0 ** int(power.replace('−', '-')):.15g}"
-    if below:
-        number = f"{to_float(number) / to_float(below):.15g}"
-    return f"{number} {unit or ''}".strip()
-
-
-_WHOLE = re.compile(
-    rf"({NUMBER_PATTERN})\s*(?:[x×*·]\s*10\s*(?:\^|\*\*)\s*[({{]?([-+−]?[0-9]+)[)}}]?"
-    rf"|/\s*({NUMBER_PATTERN}))\s*([A-Za-z]*)"
-)
-
-
-def statements(
-    name: str, pattern: str, lines: Iterable[tuple[int, str]]
-) -> list[Statement]:
-    """Statements of one thing in numbered lines: a value, and a
-    unit before or behind it.
-    """
-
-    def value(match: re.Match[str]) -> str:
-        return " ".join(
-            sorted(filter(None, match.groups()), key=lambda word: word[0].isalpha())
-        )
-
-    found = (
-        (i, each)
-        for i, line in lines
-        for each in re.finditer(pattern, line, re.IGNORECASE)
-    )
-    return [Statement(name, value(each).strip(), i) for i, each in found]
-
-
-_STATES = re.compile(
-    r"(?<![?&])\b(u|d|n|t|s|e)"
-    r"(nits?|t|pts|data|ime\s*step|ampling\s*\w+|umber of \w+|qually spaced)"
-    r"(?=[\s\[(]*(?:[a-z]+[\s\])]*)?[=:]|\s*(?:of|in|are|is|at|intervals)\b)",
-    re.IGNORECASE,
-)
-
-
-def remark(text: str) -> str:
-    """A text in one line that states nothing to those who read the file again."""
-    line = "".join(letter for letter in " ".join(text.split()) if letter.isprintable())
-    return _STATES.sub(r"\1-\2", line)
 
 
 _FOREIGN = {

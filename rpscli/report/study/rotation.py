@@ -12,10 +12,17 @@ from rpscli.case.study.reports import ReportOptions, ReportRequest, VariedKey, V
 from rpscli.case.study.schema import Axis
 from rpscli.case.text.document import Document, Fault, Path, dotted, shown
 from rpscli.errors import listed
+from rpscli.model.podium import Array
 from rpscli.report.figures import style
 from rpscli.report.study import panels
 from rpscli.report.study.report import Found, Report, keyed, label, without_uplift
-from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping, own_keys
+from rpscli.sweep.statistics.grouping import (
+    INTENSITY,
+    Grouping,
+    Histories,
+    grouping,
+    own_keys,
+)
 from rpscli.sweep.table import Indices, StoredPoints, groups, leading_keys
 
 
@@ -42,12 +49,47 @@ class Paired(NamedTuple):
     failed: int
 
 
+class _Compared(NamedTuple):
+    """Systems beside the reference: panels with their pairs, and all ratios to alpha."""
+
+    key: str
+    reference: object
+    found: Grouping
+    shown: dict[Histories, list[Paired]]
+    ratio: Array  # (points,) largest rotation over alpha, infinite where overturned
+    others: int  # systems beside the reference
+
+    @property
+    def pairs(self) -> list[Paired]:
+        """Those of all panels."""
+        return [each for group in self.shown.values() for each in group]
+
+    @property
+    def ends(self) -> list[float]:
+        """Of both axes, a little above what is drawn."""
+        every = [each.references for each in self.pairs], [p.points for p in self.pairs]
+        drawn = (self.ratio[np.concatenate(points)] for points in every)
+        return [
+            1.08 * float(each[np.isfinite(each)].max(initial=0.0)) or 1.0
+            for each in drawn
+        ]
+
+
 def rotation(study: StoredPoints, options: RotationOptions) -> Found:
-    """Largest rotations over alpha of each system and of the
-    reference (paper, Figure 7).
-    """
+    """Largest rotations over alpha of each system and of the reference (paper, Figure 7)."""
+    compared = _compared(study, options)
+    names, rows = _rows(study, compared)
+    heads = f"outcome, rotation_over_alpha, reference {compared.key}, reference_outcome"
+    return Found(
+        {"": keyed(names, f"{heads}, reference_rotation_over_alpha", rows)},
+        _figure(compared),
+    )
+
+
+def _compared(study: StoredPoints, options: RotationOptions) -> _Compared:
+    """Pair the points of each system with those of the reference."""
     table = study.table
-    layout = study.table.layout
+    layout = table.layout
     leading = leading_keys(layout)
     key = options.key or leading[-1]
     systems = groups(layout, [key])
@@ -66,23 +108,41 @@ def rotation(study: StoredPoints, options: RotationOptions) -> Found:
             bad = table.failed[mine] | table.failed[theirs]
             pair = Paired(system.values[0], mine[~bad], theirs[~bad], int(bad.sum()))
             shown[within].append(pair)
-    pairs = [each for group in shown.values() for each in group]
-    count = len(systems) - 1
     alpha = np.array([properties.alpha for properties in layout.properties])
-    ratio = (
-        table.columns["max_rotation"]
-        / alpha[np.arange(len(table)) // layout.points_of_system]
-    )
-    ratio = np.where(table.overturned, np.inf, ratio)
-    every = [[each.references for each in pairs], [each.points for each in pairs]]
-    ends = [
-        1.08 * float(drawn[np.isfinite(drawn)].max(initial=0.0)) or 1.0
-        for drawn in (ratio[np.concatenate(points)] for points in every)
-    ]
+    of_point = alpha[np.arange(len(table)) // layout.points_of_system]
+    ratio = np.where(table.overturned, np.inf, table.columns["max_rotation"] / of_point)
+    return _Compared(key, reference.values[0], found, shown, ratio, len(systems) - 1)
+
+
+def _rows(study: StoredPoints, compared: _Compared) -> tuple[list[str], list[Any]]:
+    """One row a pair; a rotation is empty where the structure overturned."""
+    table = study.table
+    layout = table.layout
+    factors = len(layout.scales) > 1 and layout.plan.measure is None
+    rows = []
+    names = list[str]()
+    for each in compared.pairs:
+        both = zip(each.points.tolist(), each.references.tolist(), strict=True)
+        for mine, theirs in both:
+            scale = {INTENSITY: layout[mine].scale} if factors else {}
+            named = layout.described(mine) | scale
+            names = list(named)
+            ours, other = (
+                (table.outcomes[n], float(compared.ratio[n])) for n in (mine, theirs)
+            )
+            rows.append((tuple(named.values()), *ours, compared.reference, *other))
+    return names, rows
+
+
+def _figure(compared: _Compared) -> Any:
+    """The figure: markers of pairs, open ones at the frame where one overturned."""
+    ends = compared.ends
+    count = compared.others
+    key = compared.key
 
     def draw(axes: style.Axes, group: Histories) -> None:
-        for place, each in enumerate(shown[group]):
-            x, y = both = ratio[each.references], ratio[each.points]
+        for place, each in enumerate(compared.shown[group]):
+            x, y = both = compared.ratio[each.references], compared.ratio[each.points]
             stood = np.isfinite(x) & np.isfinite(y)
             look = panels.look(place, count) | {"ls": "", "ms": 3.2}
             axes.plot(
@@ -97,38 +157,21 @@ def rotation(study: StoredPoints, options: RotationOptions) -> Found:
             fell.set_in_layout(False)
         axes.plot([0.0, min(ends)], [0.0, min(ends)], "k--", lw=0.8)
 
-    # One row a pair; a rotation is empty where the structure overturned.
-    factors = len(layout.scales) > 1 and layout.plan.measure is None
-    rows = []
-    names = list[str]()
-    for each in pairs:
-        for mine, theirs in zip(
-            each.points.tolist(), each.references.tolist(), strict=True
-        ):
-            named = layout.described(mine) | (
-                {INTENSITY: layout[mine].scale} if factors else {}
-            )
-            names = list(named)
-            ours, other = ((table.outcomes[n], float(ratio[n])) for n in (mine, theirs))
-            rows.append((tuple(named.values()), *ours, reference.values[0], *other))
-    heads = f"outcome, rotation_over_alpha, reference {key}, reference_outcome"
     name = r"$|\theta_{max}|/\alpha$ [-]"
-    figure = panels.in_panels(
-        found.keys,
-        found.groups,
+    failed = sum(each.failed for each in compared.pairs)
+    return panels.in_panels(
+        compared.found.keys,
+        compared.found.groups,
         draw,
-        x_label=f"{name}, {label(key, reference.values[0])}",
+        x_label=f"{name}, {label(key, compared.reference)}",
         y_label=f"{name}, the others",
         limits=lambda axes: axes.set(xlim=(0.0, ends[0]), ylim=(0.0, ends[1])),
         note=panels.noted(
-            found,
+            compared.found,
             "open markers: overturned",
             panels.shaded(count),
-            failed=sum(each.failed for each in pairs),
+            failed=failed,
         ),
-    )
-    return Found(
-        {"": keyed(names, f"{heads}, reference_rotation_over_alpha", rows)}, figure
     )
 
 

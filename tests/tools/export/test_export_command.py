@@ -7,13 +7,12 @@ from xml.etree.ElementTree import fromstring
 
 import numpy as np
 import pytest
+from commands.conftest import columns, write_case
 from paper_structures import known, needs_compiled_kernels, python
 from scipy.integrate import solve_ivp
 
 from rpscli.case.case import load_case
 from rpscli.records.loading import load_record
-
-from .conftest import columns, write_case
 
 pytestmark = needs_compiled_kernels
 

@@ -3,9 +3,8 @@
 import math
 
 import pytest
+from commands.conftest import columns, write_case
 from paper_structures import needs_compiled_kernels
-
-from .conftest import columns, write_case
 
 pytestmark = needs_compiled_kernels
 

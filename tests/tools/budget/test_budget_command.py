@@ -5,13 +5,12 @@ import math
 import shlex
 
 import pytest
+from commands.conftest import SMALL_CASE, write_case
 from paper_structures import needs_compiled_kernels
 
 from rpscli.case.case import load_case
 from rpscli.records.loading import load_components
 from rpscli.tools.budget.command import _values
-
-from .conftest import SMALL_CASE, write_case
 
 pytestmark = needs_compiled_kernels
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from paper_structures import needs_compiled_kernels, python
+from sweep.small_studies import BASE, ROOT, csv_rows, document_of
 
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
@@ -19,7 +20,6 @@ from rpscli.sweep.run import LARGEST_BATCH
 from rpscli.tools.design.keys import parse_design
 from rpscli.tools.design.report import neighbours_note
 from rpscli.tools.design.search import Search, weights_of
-from sweep.small_studies import BASE, ROOT, csv_rows, document_of
 
 SLENDERNESS = "podium.bearing.slenderness"
 WEDGE = "podium.bearing.wedge_slenderness"
