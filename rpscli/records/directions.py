@@ -21,7 +21,7 @@ HORIZONTAL = Direction(vertical=False)
 
 _VERTICAL = re.compile(
     r"v|z|u|d|up|ud|du|dn|dwn|down|vrt|vert|vertical|vertic\w*|updown|upward\w*|downward\w*"
-    r"|(?:gm|ch|comp|acc?)\d*z|[a-z]{2}z|hz",
+    r"|(?:gm|ch|comp|acc?)\d*z|[a-z]{2}z\d*|hz",
     re.IGNORECASE,
 )
 _COMPASS = {"n": 0.0, "e": 90.0, "s": 180.0, "w": 270.0}

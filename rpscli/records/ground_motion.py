@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.errors import RecordError, is_number, require_fields, require_kind, told
+from rpscli.records.directions import direction_of
 from rpscli.shown import Frozen, Shown, frozen, with_unit
 
 if TYPE_CHECKING:
@@ -45,10 +46,16 @@ class Recording(NamedTuple):
     @property
     def is_vertical(self) -> bool:
         """True if the component is stated to be a vertical one."""
-        return _VERTICAL.fullmatch(self.direction) is not None
+        direction = direction_of(self.direction)
+        return direction is not None and direction.vertical
+
+    @property
+    def in_borehole(self) -> bool:
+        """True if the instrument is stated to be below the ground."""
+        return _BOREHOLE.search(self.station) is not None
 
 
-_VERTICAL = re.compile(r"U-?D|UP|DOWN|DWN|VERT\w*|V|[A-Z]*Z\d*", re.IGNORECASE)
+_BOREHOLE = re.compile(r"bore-?hole|down-?hole|\bdepth\b", re.IGNORECASE)
 
 UNKNOWN = Recording()
 

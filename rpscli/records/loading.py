@@ -34,6 +34,7 @@ from rpscli.records.recordings import (
     channels,
     earthquake,
     pairs_among,
+    stated,
     vertical_of,
     verticals,
 )
@@ -350,6 +351,7 @@ def _files(of: Source, folder: Path | None, notes: list[str]) -> list[Source]:
         return [of]
     names = _readable_names(of, files, notes)
     single = [each for name in names for each in channels(of.at(name), folder)]
+    single = _above_ground(of, single, folder, notes)
     if upright := verticals(single, folder):
         left_out = [
             each.place if "channel" in of.values or "channel" not in each.values
@@ -361,6 +363,17 @@ def _files(of: Source, folder: Path | None, notes: list[str]) -> list[Source]:
     return (
         single if of.components else _paired(of, [each.alone for each in single], folder)
     )
+
+
+def _above_ground(
+    of: Source, single: list[Source], folder: Path | None, notes: list[str]
+) -> list[Source]:
+    """Sources without those in boreholes, with a note on these; all if there are no others."""
+    below = [each for each in single if stated(each, folder).in_borehole]
+    if not below or len(below) == len(single):
+        return single
+    notes.append(f"{of}: in boreholes, left out: {_some([b.place for b in below])}")
+    return [each for each in single if each not in below]
 
 
 def _named_files(of: Source, folder: Path | None) -> dict[str, Path] | None:

@@ -34,9 +34,11 @@ from typing import TYPE_CHECKING, Literal
 
 from rpscli.errors import RecordError
 from rpscli.records import sets
+from rpscli.records.directions import direction_of
 from rpscli.records.ground_motion import UNKNOWN, Recording
 from rpscli.records.measures import Of
 from rpscli.records.source import FILE, SET, Source
+from rpscli.records.when import seconds_of
 
 if TYPE_CHECKING:
     from rpscli.records.formats.record_text import Channel
@@ -61,7 +63,10 @@ _VERTICAL = re.compile(
 recording, and the rest."""
 
 _SEED = re.compile(r"[A-Z]{2}[A-Z\d]\d*")  # of a direction: band, instrument, component
-_NAME = re.compile(r"\s*([^,_\d]+?)(?:\s+EQ\b|-\d+\b|[,_]|\s+(?=\d))", re.IGNORECASE)
+_NAME = re.compile(
+    r"\s*(?:record of\s+)?([^,_\d]+?)(?:\s+EQ\b|\s+earthquake\b|-\d+\b|[,_]|\s+(?=\d))",
+    re.IGNORECASE,
+)
 _YEAR = re.compile(r"\b((?:19|20)\d\d)\b|\d/\d+/(\d\d)\b")
 
 
@@ -99,12 +104,29 @@ def stated(of: Source, folder: Path | None) -> Recording:
 
 
 def event_of(recording: Recording) -> str | None:
-    """The earthquake of a recording, by its origin time, or by name and year."""
-    if recording.origin:
-        return f"at {recording.origin}"
-    # Without numbers of shocks: sets call `Northridge` what flatfiles call
-    # `Northridge-01`, and shocks of one sequence are not independent.
-    return earthquake(recording.event) or None
+    """The earthquake of a recording in words, by name and year, or by its origin time."""
+    named = earthquake(recording.event)
+    return named or (f"at {recording.origin}" if recording.origin else None)
+
+
+def _event_names(recording: Recording) -> set[str]:
+    """Names that recordings of one earthquake share.
+
+    Of its origin the minute, and the minute half a minute later: origins of different
+    agencies differ by seconds. Else its name and year, without numbers of shocks: sets
+    call `Northridge` what flatfiles call `Northridge-01`, and shocks of one sequence are
+    not independent.
+    """
+    named = earthquake(recording.event)
+    names = {f"event {named}"} if _YEAR.search(named) else set[str]()
+    seconds = seconds_of(recording.origin)
+    if seconds is not None:
+        names |= {f"event at {seconds // 60}", f"event about {(seconds + 30.0) // 60}"}
+    elif recording.origin:
+        names.add(f"event at {recording.origin}")
+    elif named:
+        names.add(f"event {named}")
+    return names
 
 
 def earthquake(text: str) -> str:
@@ -113,8 +135,22 @@ def earthquake(text: str) -> str:
     """
     found = _NAME.match(text)
     year = _YEAR.search(text)
-    number = (year[1] or f"19{year[2]}") if year else ""
-    return f"{found[1].strip().lower()} {number}".strip() if found else ""
+    number = (year[1] or _whole_year(year[2])) if year else ""
+    if found is None:
+        return ""
+    name = _COUNTRY.sub("", found[1].strip().lower()).strip()
+    return f"{name} {number}".strip()
+
+
+def _whole_year(two: str) -> str:
+    return f"{'20' if int(two) < 30 else '19'}{two}"
+
+
+_COUNTRY = re.compile(
+    r"(?<=\w)[\s,]+(?:turkey|taiwan|japan|italy|iran|chile|mexico|greece|new zealand|nepal"
+    r"|usa|california|calif|ca|nevada|alaska|armenia|china|peru|india|romania|earthquake)$"
+)
+"""What names of earthquakes end with in one catalogue and not in another."""
 
 
 def _stated_name(recording: Recording) -> set[str]:
@@ -151,14 +187,22 @@ def clusters(
     apart = {
         of for of, at in azimuths.items() if len(at) == 2 and (at[1] - at[0]) % 180 == 90
     }
-    groups: dict[str, int] = {}
-    first_names = list[str]()
-    for number, (of, own) in enumerate(zip(parsed, places, strict=True)):
+    every = []
+    for of, own in zip(parsed, places, strict=True):
         names = {_family(of, place, apart) for place in own}
         if of.scheme == FILE:
             names |= _stated_name(stated(of, folder))
-        if by == "events" and (event := event_of(stated(of, folder))):
-            names.add(f"event {event}")
+        if by == "events":
+            names |= _event_names(stated(of, folder))
+        every.append(names)
+    return numbered(every)
+
+
+def numbered(every: Sequence[set[str]]) -> tuple[int, ...]:
+    """Numbers of what has names: what shares one, or shares one with what does, is one."""
+    groups: dict[str, int] = {}
+    first_names = []
+    for number, names in enumerate(every):
         shared = {groups[name] for name in names & groups.keys()}
         first = min(shared, default=number)
         groups |= dict.fromkeys(names, first)
@@ -167,6 +211,18 @@ def clusters(
         first_names.append(min(names))
     numbers: dict[int, int] = {}
     return tuple(numbers.setdefault(groups[name], len(numbers)) for name in first_names)
+
+
+def events_among(
+    recordings: Sequence[Recording], numbers: Sequence[int]
+) -> tuple[int, ...]:
+    """Numbers of the earthquakes of recordings, each with its own number; a recording
+    that states no earthquake is of one of its own.
+    """
+    return numbered([
+        _event_names(each) or {f"recording {number}"}
+        for each, number in zip(recordings, numbers, strict=True)
+    ])  # fmt: skip
 
 
 def _family(of: Source, place: str, apart: set[str]) -> str:
@@ -189,8 +245,11 @@ def _family(of: Source, place: str, apart: set[str]) -> str:
 
 
 def verticals(sources: Iterable[Source], folder: Path | None) -> list[Source]:
-    """Vertical components among sources, by name beside others of
-    their recording or by header.
+    """Vertical components among sources, by name beside others of their recording or by
+    header.
+
+    Raises RecordError where three files are of one recording and two of them only are
+    known to be horizontal.
     """
     every = dict.fromkeys(sources)
     single = Counter(
@@ -202,13 +261,54 @@ def verticals(sources: Iterable[Source], folder: Path | None) -> list[Source]:
         if single[of.place] == 1 and (match := _VERTICAL.fullmatch(of.place))
     }
     others = tuple(of.place for of in every if of not in marked)
+    upright = _upright_by_word(every, folder)
     found = [
         of
         for of in every
         if (of in marked and any(other.startswith(marked[of][1]) for other in others))
+        or of.place in upright
         or stated(of, folder).is_vertical
     ]
     return found if len(found) < len(every) else []
+
+
+_LAST_WORD = re.compile(
+    r"(.*?[-_. ])([A-Za-z]{1,12}\d{0,3}[A-Za-z]?|\d{3})|(.*\d)([A-Za-z])"
+)
+"""The last word of a name, or its last letter behind a digit, and what stands before."""
+
+
+def _upright_by_word(sources: Iterable[Source], folder: Path | None) -> set[str]:
+    """Places of files whose last word says up, beside others of the same beginning."""
+    families: dict[str, list[tuple[str, str]]] = {}
+    for of in sources:
+        path = PurePath(of.place)
+        match = _LAST_WORD.fullmatch(path.stem) if of.scheme == FILE else None
+        if match:
+            beginning = str(path.with_name(match[1] or match[3]))
+            families.setdefault(beginning, []).append((of.place, match[2] or match[4]))
+    upright = set()
+    for members in families.values():
+        known = [(place, direction_of(word)) for place, word in members]
+        level = [place for place, way in known if way is not None and not way.vertical]
+        unknown = [place for place, way in known if way is None]
+        up = [place for place, way in known if way is not None and way.vertical]
+        if up and (level or len(unknown) > 1):
+            upright.update(up)
+        elif len(level) == 2 and len(unknown) == 1 and len(members) == 3:
+            _require_told(unknown[0], level, folder)
+    return upright
+
+
+def _require_told(place: str, level: Sequence[str], folder: Path | None) -> None:
+    """Refuse a third component of which nothing says whether it is vertical."""
+    if stated(Source.parse(place), folder).direction:
+        return
+    beside = " and ".join(PurePath(each).name for each in level)
+    raise RecordError(
+        f"{place}: is a third component beside {beside}, and neither its name nor its header"
+        " says that it is vertical; call it ...-UP, or name the records that are meant"
+    )
 
 
 def vertical_of(of: Source, folder: Path | None) -> Source:

@@ -85,7 +85,16 @@ def two_column_text(motion: GroundMotion) -> str:
     reader of ours understands.
     """
     header = remark(f"{motion.name}: {motion.description}; from {motion.source}")
-    lines = [f"# {header}", f"# dt: {motion.dt!r}", "# Time (s)  Acceleration (m/s2)"]
+    of = motion.recording
+    said = {
+        "station": of.station,
+        "component": of.direction,
+        "event": of.event,
+        "origin": of.origin,
+    }
+    lines = [f"# {header}"]
+    lines += [f"# {key}: {remark(text)}" for key, text in said.items() if text]
+    lines += [f"# dt: {motion.dt!r}", "# Time (s)  Acceleration (m/s2)"]
     lines += [
         f"{t:.10g} {a:.9g}" for t, a in zip(motion.time, motion.acceleration, strict=True)
     ]

@@ -29,7 +29,7 @@ STATED = {
         origin="2018 February 12         21:15:54", start="20180212_211554",
     )),
     "a.NS": (knet(), Recording(
-        "", "CHB002", magnitude=5.1, origin="2014/12/31 23:49:00", direction="N-S",
+        "", "CHB002", magnitude=5.1, origin="2014/12/31 23:49:00 JST", direction="N-S",
         start="2014/12/31 23:49:20",
     )),
     "a.asc": (esm(), Recording(

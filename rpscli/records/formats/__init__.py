@@ -14,7 +14,11 @@ from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import PluginError, RecordError
 from rpscli.records.formats.agencies import LAYOUTS
 from rpscli.records.formats.at2 import FORMAT, contents_of_at2, read_at2, recognises_at2
-from rpscli.records.formats.columns import read_columns, recognises_columns
+from rpscli.records.formats.columns import (
+    contents_of_columns,
+    read_columns,
+    recognises_columns,
+)
 from rpscli.records.formats.record_text import Channel, RecordText, read_text
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.source import FILE, Source
@@ -47,7 +51,7 @@ _PLAIN = RecordFormat(
     (".txt", ".dat", ".csv", ".tsv"),
     recognises_columns,
     read_columns,
-    lambda _: [Channel()],
+    contents_of_columns,
 )
 """Accepts most, so it comes last."""
 

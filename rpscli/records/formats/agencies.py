@@ -271,6 +271,8 @@ def _knet_numbers(text: RecordText, end: int, said: Said) -> int:
             duration.line,
         )
     said["count"] = duration._replace(value=f"{round(count)}")
+    if origin := said.get("origin"):  # all their times are those of Japan
+        said["origin"] = origin._replace(value=f"{origin.value} JST")
     if (direction := said.get("direction")) and direction.value in "123456":
         place = int(direction.value) - 1
         said["direction"] = direction._replace(value=("N-S", "E-W", "U-D")[place % 3])

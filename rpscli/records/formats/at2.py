@@ -12,6 +12,7 @@ import re
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.records.formats.record_text import Channel, RecordText, Stated
+from rpscli.records.formats.recording_words import titled_recording
 from rpscli.records.formats.statements import (
     STATED_PATTERN,
     STEP_PATTERN,
@@ -114,12 +115,10 @@ def _recording(title: list[str]) -> Recording:
     if "not a recording" in " ".join(title).lower():
         return UNKNOWN
     # Fewer commas are those of another sentence.
-    parts = [part for line in title for part in line.split(";") if part.count(",") > 1]
-    whole = next((part.split(",") for part in parts if part.count(",") == 3), None)
-    if whole is None:
-        return Recording((parts or [""])[0].strip())
-    event, date, station, direction = map(str.strip, whole)
-    return Recording(f"{event}, {date}", station=station, direction=direction)
+    parts = [part.strip() for line in title for part in line.split(";")]
+    known = filter(None, map(titled_recording, parts))
+    longer = (part for part in parts if part.count(",") > 1)
+    return next(known, None) or Recording(next(longer, ""))
 
 
 def _header(text: RecordText) -> _Header | None:
@@ -202,6 +201,15 @@ _VALUES_PER_LINE = 5
 _TITLE_WIDTH = 240
 
 
+def _recording_line(of: Recording) -> list[str]:
+    """The line `event, date, station, direction` of a recording; none if all is unknown."""
+    event, _, date = of.event.partition(",")
+    fields = (event, of.origin or date, of.station, of.direction)
+    if not (of.station or of.direction or of.origin):
+        return []
+    return [", ".join(remark(field.replace(",", " ")).strip() or "-" for field in fields)]
+
+
 def at2_text(motion: GroundMotion) -> str:
     """The content of the AT2 file of a motion, in g, to eight digits."""
     # Its first line says that it is synthetic, or what it was converted from.
@@ -224,6 +232,7 @@ def at2_text(motion: GroundMotion) -> str:
     ]
     header = [
         f"PEER AT2 LAYOUT, {origin} BY RPS {VERSION}",
+        *([] if made else _recording_line(motion.recording)),
         title[:_TITLE_WIDTH],
         "ACCELERATION TIME SERIES IN UNITS OF G",
         f"NPTS= {motion.npts:6d}, DT= {motion.dt!r} SEC",

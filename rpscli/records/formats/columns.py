@@ -18,6 +18,7 @@ from typing import NamedTuple, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.records.directions import direction_of
 from rpscli.records.formats.record_text import (
     Array,
     Channel,
@@ -26,6 +27,7 @@ from rpscli.records.formats.record_text import (
     printed_resolution,
     uniform_step,
 )
+from rpscli.records.formats.recording_words import recording_of
 from rpscli.records.formats.statements import STEP_PATTERN, Statement, statements
 from rpscli.records.formats.titles import (
     ACCELERATION,
@@ -52,7 +54,7 @@ _STEP = (
 )
 _COUNT = r"\b(?:npts|ndata|number of (?:data|points|samples|values))\b\s*[=:]\s*([0-9]+)"
 _UNITS_KEY = (
-    r"(?<![?&])\bunits?\b\s*(?:[=:]|(?:of|in|are|is)\b)"
+    r"(?<![?&])\b\w*?units?\b\s*(?:[=:]|(?:of|in|are|is)\b)"
     rf"(?:[\s(\[]*(?:({UNIT_PATTERN}))|\s*([^,;]+))"
 )
 _PEAK = (
@@ -126,6 +128,21 @@ def read_columns(text: RecordText) -> GroundMotion:
     if values[0] == dt:
         doubts.append(f"the first value, {dt:g}, equals dt: see that it is not a header")
     return text.motion(stated, values, "one-column text", table.words, *doubts)
+
+
+def contents_of_columns(text: RecordText) -> list[Channel]:
+    """The columns of accelerations, each with what header and title say of it."""
+    table = _table(text)
+    width = int(table.widths[0])
+    recording = recording_of(line.value for line in table.header)
+    titles = [] if np.any(table.widths != width) else _titles(text, table, width)
+    held = [(i, title) for i, title in enumerate(titles) if title.kind == ACCELERATION]
+    if len(held) < 2:
+        return [Channel(recording=recording)]
+    return [
+        Channel(i + 1, title.line, title.name, recording._replace(direction=title.name))
+        for i, title in held
+    ]
 
 
 def _plain(line: str) -> str:
@@ -412,7 +429,12 @@ def _stated(text: RecordText, table: _Table, title: Title | None) -> Stated:
     peak = next(iter(statements("peak", _PEAK, lines)), None)
     if title and title.unit and (canonical_unit(title.unit) or not title.remarks):
         units.append(Statement(f"the title {title.name}", title.unit, title.line))
-    return Stated(text.unit(units), text.agreed(steps, text.step), peak=peak)
+    recording = recording_of(line for _, line in lines)
+    if title and direction_of(title.name) is not None:
+        recording = recording._replace(direction=title.name)
+    return Stated(
+        text.unit(units), text.agreed(steps, text.step), peak=peak, recording=recording
+    )
 
 
 COLUMNS = "?columns=time,acceleration [g]"

@@ -413,7 +413,8 @@ class RecordText:
                     f"the values peak at {peak:.6g} and the header says {wanted:.6g}",
                 )
         # A file that was written by rps says the unit of the one before it too.
-        words = f"{re.sub('; values in [^;]*', '', words)}; values in {unit}"
+        each = unit if self.multiple is None else f"{self.multiple:g} {unit}"
+        words = f"{re.sub('; values in [^;]*', '', words)}; values in {each}"
         return GroundMotion(
             values * factor, dt, name or self.name, self.source, form, words, doubts,
             stated.recording,

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.recordings import clusters
+from rpscli.records.recordings import clusters, events_among
 from rpscli.records.target import Component, TargetSpectrum
 from rpscli.tools.selection.candidates import (
     Candidate,
@@ -180,13 +180,13 @@ def _pool(every: list[Candidate], fits: list[list[Candidate]], goal: Goal) -> Po
     named = [one.motions[0].source for one in every]
     named = [f"array {i}" if name == "array" else name for i, name in enumerate(named)]
     recordings = np.repeat(clusters(named), [len(scaled) for scaled in fits])
-    # A recording that does not name its earthquake is of one of its own.
-    events = [one.event or f"{at}" for one, at in zip(fitting, recordings, strict=True)]
+    of_each = [one.motions[0].recording for one in fitting]
+    events = np.array(events_among(of_each, recordings.tolist()), np.int64)
     return Pool(
         np.array([one.scaled for one in fitting]).reshape(-1, len(goal.wanted)),
         np.array([one.factor for one in fitting]),
         recordings,
-        np.unique(events, return_inverse=True)[1],
+        events,
     )
 
 
