@@ -116,10 +116,31 @@ def nearest(word: str, known: Iterable[str], likeness: float = 0.7) -> str | Non
     return next(iter(alike(word, known, 1, likeness)), None)
 
 
+def foreign_letters(word: str) -> str:
+    """Characters of a word that look like others, by their names; empty without such.
+
+    >>> foreign_letters("m\u0430ss")
+    " ('\u0430' in it is U+0430, CYRILLIC SMALL LETTER A)"
+    """
+    import unicodedata  # needed by those who made a mistake only
+
+    odd = [
+        each
+        for each in word
+        if not each.isascii()
+        and (each.isalpha() or not each.isprintable() or each.isspace())
+    ]
+    told = [
+        f"{each!r} in it is U+{ord(each):04X}, {unicodedata.name(each, 'without a name')}"
+        for each in dict.fromkeys(odd)
+    ]
+    return f" ({'; '.join(told[:3])})" if told else ""
+
+
 def hint(word: str, known: Iterable[str], otherwise: str, likeness: float = 0.7) -> str:
     """A remedy for a word that is not known: the nearest known one, or `otherwise`."""
     meant = nearest(word, known, likeness)
-    return f"did you mean {meant}?" if meant else otherwise
+    return f"did you mean {meant}?{foreign_letters(word)}" if meant else otherwise
 
 
 def all_made(

@@ -192,6 +192,11 @@ def _write(
         raise UsageError(
             f"-o {place}: both components are two files; name a folder, and --to"
         )
+    if place.suffix and not named and not place.is_dir():
+        raise UsageError(
+            f"-o {place}: files end with {' or '.join(FORMATS.values())}; call it so, or"
+            " name a folder"
+        )
     wanted = named or form or "at2"
     contents = [
         (at2_text if wanted == "at2" else two_column_text)(motion) for motion in motions

@@ -24,6 +24,7 @@ from rpscli.errors import (
 )
 from rpscli.machine import mode_of
 from rpscli.records import made, sets
+from rpscli.records.directions import direction_of
 from rpscli.records.ground_motion import (
     GroundMotion,
     MotionComponents,
@@ -48,6 +49,7 @@ from rpscli.records.source import (
     is_file,
     split_options,
 )
+from rpscli.records.when import seconds_of
 
 _MAKERS: dict[str, Callable[[Source], GroundMotion]] = {
     SET: sets.load_component,
@@ -233,10 +235,11 @@ def _beside(first: GroundMotion, second: GroundMotion, source: str) -> GroundMot
     one = first.recording
     other = second.recording
     apart = _apart(one.start, other.start)
+    begun = seconds_of(one.origin), seconds_of(other.origin)
     for name, differ in (
         ("station", one.station != other.station),
         ("event", earthquake(one.event) != earthquake(other.event)),
-        ("origin", one.origin != other.origin),
+        ("origin", _differ(begun) if None not in begun else one.origin != other.origin),
         ("start", apart > _LATE),
     ):
         told = getattr(one, name), getattr(other, name)
@@ -261,13 +264,41 @@ def _beside(first: GroundMotion, second: GroundMotion, source: str) -> GroundMot
             f"{source}: {each.direction} is a vertical component; name two horizontal"
             " ones, and that as `vertical`"
         )
-    if apart <= 0.5 * first.dt:
-        return second
-    late = (
-        f"its header states the start {other.start}, that of the other component"
-        f" {one.start}"
-    )
-    return replace(second, warnings=(*second.warnings, f"{late}: line them up"))
+    doubts = [*_angle_doubts(one.direction, other.direction, source)]
+    if apart > 0.5 * first.dt:
+        doubts.append(
+            f"its header states the start {other.start}, that of the other component"
+            f" {one.start}: line them up"
+        )
+    return replace(second, warnings=(*second.warnings, *doubts))
+
+
+def _differ(origins: tuple[float | None, float | None]) -> bool:
+    """Whether two origins are more than a minute apart."""
+    one, other = origins
+    return one is not None and other is not None and abs(one - other) > 60.0
+
+
+LEAST_ANGLE = 30.0
+USUAL_ANGLE = 60.0
+"""Between components that are taken for a pair at right angles [deg]."""
+
+
+def _angle_doubts(one: str, other: str, source: str) -> Iterator[str]:
+    """A doubt about the angle between two directions; refuse those along one line."""
+    ways = direction_of(one), direction_of(other)
+    known = [way.azimuth for way in ways if way is not None and way.azimuth is not None]
+    if len(known) < 2:
+        return
+    turned = abs(known[0] - known[1]) % 180.0
+    angle = min(turned, 180.0 - turned)
+    if angle < LEAST_ANGLE:
+        raise RecordError(
+            f"{source}: components along {one} and {other} are {angle:g} degrees apart, and"
+            " a pair is taken for right angles; name two of different directions"
+        )
+    if angle < USUAL_ANGLE:
+        yield f"{one} and {other} are {angle:g} degrees apart, and taken for right angles"
 
 
 def _apart(one: str, other: str) -> float:

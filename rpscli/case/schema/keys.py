@@ -29,7 +29,7 @@ from rpscli.case.schema.fields import (
     Whole,
 )
 from rpscli.case.text.document import Fault, Path, dotted, path_of
-from rpscli.errors import alike, listed, nearest
+from rpscli.errors import alike, foreign_letters, listed, nearest
 
 
 def fields_of(section: type[BaseModel]) -> dict[str, FieldInfo]:
@@ -163,7 +163,7 @@ def unknown_key(
             near = ", ".join(alike(str(key), fields, 3))
             remedy = f"; near are {near}; `rps explain {dotted(parent)}` lists all"
     elif meant[-1] != key:
-        remedy = f"; did you mean {dotted(meant)}?"
+        remedy = f"; did you mean {dotted(meant)}?{foreign_letters(str(key))}"
     else:
         belongs = f"{key} belongs under {dotted(meant[:-1])}" if meant[:-1] else ""
         remedy = f"; {belongs or 'it belongs at the top level'}"

@@ -52,6 +52,11 @@ GAP = 3
 """Between two columns."""
 
 
+def _columns_asked() -> bool:
+    """Whether COLUMNS says a width; 0 and words say none."""
+    return os.environ.get("COLUMNS", "").isdigit() and int(os.environ["COLUMNS"]) > 0
+
+
 @dataclass(frozen=True)
 class Terminal:
     """One JSON document in place of tables; quiet: neither
@@ -205,7 +210,7 @@ def rendered(tables: Iterable[Part]) -> str:
     console = Console(
         file=page,
         force_terminal=screen or None,  # None leaves it to FORCE_COLOR
-        width=None if screen or os.environ.get("COLUMNS") else PLAIN_WIDTH,
+        width=None if screen or _columns_asked() else PLAIN_WIDTH,
         # rich leaves bold letters where NO_COLOR asks for none.
         color_system=None if os.environ.get("NO_COLOR") else "auto",
         highlight=False,

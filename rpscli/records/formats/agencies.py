@@ -353,7 +353,7 @@ CSMIP = Layout(
 GEONET = Layout(
     "GeoNet volume 2",
     (".v2a",),
-    begins=r"Corrected accelerogram\b(?!.*\bCHAN\s+\d)",
+    begins=r"Corrected accelerogram\b(?!.*\b(?:CHAN|COMP|FILE)\s+\S)",
     corrected=r"Corrected accelerogram\b",
     refusal="the file is {!r}; only corrected accelerograms can be read",
     header=26,  # ten rows of numbers included
