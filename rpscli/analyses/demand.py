@@ -1,4 +1,11 @@
-"""Largest demands of many histories, without their samples: what studies are made of."""
+"""Largest demands of many histories, without their samples: what studies are made of.
+
+>>> from rpscli import Bearing, PodiumStructure, load_record
+>>> podium = PodiumStructure(Bearing(1.5, 0.15, 0.3, 0.5), 4e4, 4e5)
+>>> pulse = load_record("pulse:sine?amplitude=0.4g&period=0.8")
+>>> demand(podium, pulse).outcome
+'survived'
+"""
 
 from __future__ import annotations
 

@@ -258,6 +258,13 @@ def modal(structure: PodiumStructure) -> ModalResult:
 
     Exact where a state begins; the paper's first-order values are in
     `first_order` of each state.
+
+    Examples
+    --------
+    >>> from rpscli import Bearing, PodiumStructure
+    >>> podium = PodiumStructure(Bearing(1.5, 0.15, 0.3, 0.5), 4e4, 4e5)
+    >>> modal(podium).rolling.linearised_at
+    0.0
     """
     require_structure(structure)
     building = structure.superstructure

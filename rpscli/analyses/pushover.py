@@ -1,5 +1,10 @@
 """Static behaviour: the podium alone, and the whole structure
 under lateral floor forces.
+
+>>> from rpscli import Bearing, PodiumStructure
+>>> podium = PodiumStructure(Bearing(1.5, 0.15, 0.3, 0.5), 4e4, 4e5)
+>>> round(pushover(podium).critical_displacement, 3)
+0.892
 """
 
 from __future__ import annotations

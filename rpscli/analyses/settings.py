@@ -36,6 +36,11 @@ class TimeHistorySettings:
     ------
     ValueError
         For a value that no history can be run with.
+
+    Examples
+    --------
+    >>> TimeHistorySettings(free_vibration=2.0).free_vibration
+    2.0
     """
 
     free_vibration: float | None = None

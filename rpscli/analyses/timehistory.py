@@ -1,4 +1,11 @@
-"""Time history of a rocking podium structure under a ground motion."""
+"""Time history of a rocking podium structure under a ground motion.
+
+>>> from rpscli import Bearing, PodiumStructure, load_record
+>>> podium = PodiumStructure(Bearing(1.5, 0.15, 0.3, 0.5), 4e4, 4e5)
+>>> pulse = load_record("pulse:sine?amplitude=0.4g&period=0.8")
+>>> time_history(podium, pulse, with_fixed_base=False).uplifts
+1
+"""
 
 from __future__ import annotations
 

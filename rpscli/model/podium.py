@@ -81,6 +81,13 @@ class PodiumStructure(Shown):
     Notes
     -----
     Theory (2.3), (5.1).
+
+    Examples
+    --------
+    >>> from rpscli import Bearing
+    >>> podium = PodiumStructure(Bearing(1.5, 0.15, 0.3, 0.5), 4e4, 4e5)
+    >>> round(podium.critical_rotation, 4)
+    0.2946
     """
 
     bearing: Bearing

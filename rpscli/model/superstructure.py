@@ -70,7 +70,11 @@ class RayleighDamping:
 
 @dataclass(frozen=True)
 class ModalDamping:
-    """One damping ratio in every fixed-base mode."""
+    """One damping ratio in every fixed-base mode.
+
+    >>> ModalDamping(0.05).ratios(np.array([20.0, 60.0])).tolist()
+    [0.05, 0.05]
+    """
 
     ratio: float
 
@@ -195,6 +199,12 @@ class Superstructure(Shown):
     ------
     ValueError
         If lengths differ, or a value is not positive or no hardening.
+
+    Examples
+    --------
+    >>> stiffnesses = profile_stiffnesses([2e5] * 3, 0.3)
+    >>> Superstructure([2e5] * 3, stiffnesses, ModalDamping(0.05)).periods.round(3)
+    array([0.3  , 0.099, 0.068])
     """
 
     masses: Array

@@ -1,5 +1,13 @@
 """From sources to ground motions: files, folders, lists, sets,
 pulses, synthetic motions.
+
+>>> pulse = load_record("pulse:sine?amplitude=0.4g&period=0.8")
+>>> round(pulse.pga, 3), pulse.npts
+(3.923, 2001)
+>>> x = "pulse:sine?amplitude=0.4g&period=0.8"
+>>> both = load_components(x, y="synthetic:?pga=0.2g&seed=1&dt=0.0004")
+>>> round(both.y.pga, 3)
+1.961
 """
 
 from __future__ import annotations
