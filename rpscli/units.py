@@ -126,8 +126,8 @@ OTHERS = {
 }  # fmt: skip
 
 PREFIXES = {
-    "n"
-    " nano": -9, "u µ micro": -6, "m milli": -3, "c centi": -2, "d deci": -1, "da deca": 1,
+    "n nano": -9, "u µ micro": -6, "m milli": -3, "c centi": -2, "d deci": -1,
+    "da deca": 1,
     "h hecto": 2, "k kilo": 3, "M mega": 6, "G giga": 9, "T tera": 12,
 }  # fmt: skip
 """Powers of ten."""

@@ -67,13 +67,15 @@ _DESIGNED = "podium.column, podium.plan and superstructure.vertical_period in th
 
 NEEDS = {
     "superstructure": "a superstructure",
-    "superstructure,"
-    " flat part": "a superstructure on columns with a flat part, so that V_st > 0",
+    "superstructure, flat part": (
+        "a superstructure on columns with a flat part, so that V_st > 0"
+    ),
     "superstructure.storey_height": "superstructure.storey_height in the case",
     "superstructure, devices": "a superstructure and podium.devices",
     "superstructure.yield": "superstructure.yield in the case",
-    "superstructure.yield,"
-    " storey_height": "superstructure.yield and superstructure.storey_height in the case",
+    "superstructure.yield, storey_height": (
+        "superstructure.yield and superstructure.storey_height in the case"
+    ),
     "podium.friction": "podium.friction in the case",
     "contact": "a compliant podium.contact: kind plane or edges",
     "plane contact": "podium.contact of the kind plane under flat ends",

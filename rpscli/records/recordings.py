@@ -383,7 +383,7 @@ def pairs_among(
             raise RecordError(
                 f"{text}: {some}: names do not tell two horizontal components of one"
                 " recording, as MUL009.AT2 and MUL279.AT2, AOM001.EW and AOM001.NS do;"
-                " leave it out, or name each pair, as in x.at2?second=y.at2&both"
+                " leave it out, or name each pair, as in 'x.at2?second=y.at2&both'"
             )
         found.append(both[0].together(both[1]).plus(**asked))
     return found

@@ -232,3 +232,11 @@ def test_the_public_reader_is_the_same(tmp_path):
     (tmp_path / "x.csv").write_text(table("T [s],Se [m/s2]", TIMES + 0.02, VALUES))
     with pytest.raises(rpscli.RpsError, match="spectrum"):
         rpscli.load_record(f"{tmp_path / 'x.csv'}")
+
+
+def test_all_values_in_one_line_and_two_records_in_one_file(tmp_path):
+    line = " ".join(f"{x:.6f}" for x in VALUES)
+    motion = read(tmp_path, f"dt: 0.005\nunits: g\n{line}\n")
+    assert motion.npts == len(VALUES)
+    both = series("dt: 0.005", "units: g") + "\n" + series().lstrip("\n")
+    assert any("blank line" in text for text in read(tmp_path, both).warnings)

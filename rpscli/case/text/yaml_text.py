@@ -17,22 +17,31 @@ from rpscli.errors import CaseError
 
 REMEDIES = {
     "\\t' that cannot start": "there is a tab here; indent with spaces",
-    "mapping values are not"
-    " allowed": "a colon is not expected here; indent the keys of one"
-    " mapping alike, and put text that holds a colon and a blank in quotes",
-    "could not find"
-    " expected ':'": "a key without its colon; write `key: value`, with a blank"
-    " after the colon",
-    "expected"
-    " <block end>": "the indentation does not fit; the keys of one mapping begin in the"
-    " same column",
-    "expected"
-    " ',' or": "a bracket or brace is not closed, or a comma is missing before this",
-    "found"
-    " undefined"
-    " alias": "no anchor of this name is defined before; text that begins with *"
-    " needs quotes",
+    "mapping values are not allowed": (
+        "a colon is not expected here; indent the keys of one mapping alike, and put text"
+        " that holds a colon and a blank in quotes"
+    ),
+    "could not find expected ':'": (
+        "a key without its colon; write `key: value`, with a blank after the colon"
+    ),
+    "expected <block end>": (
+        "the indentation does not fit; the keys of one mapping begin in the same column"
+    ),
+    "expected ',' or": (
+        "a bracket or brace is not closed, or a comma is missing before this"
+    ),
+    "found undefined alias": (
+        "no anchor of this name is defined before; text that begins with * needs quotes"
+    ),
     "found unexpected end of stream": "a quotation mark is not closed",
+    "unknown escape character": (
+        "in double quotes a backslash begins an escape; write paths in single quotes, or"
+        " with /"
+    ),
+    "escape sequence of": (
+        "in double quotes a backslash begins an escape; write paths in single quotes, or"
+        " with /"
+    ),
     "cannot start any token": "text that begins with this character needs quotes",
     "nested over": "a case is five levels deep: close brackets, or remove indentation",
     "nodes": "no case or study has so many values",

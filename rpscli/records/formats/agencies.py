@@ -387,10 +387,7 @@ KNET = Layout(
     says=_keys(
         r"(?=\s)",
         rate="Sampling Freq(Hz)", duration="Duration Time(s)", scale="Scale Factor",
-        peak=(
-            "Max. Acc."
-            " (gal)"
-        ), station="Station Code", direction="Dir.", origin="Origin Time",
+        peak="Max. Acc. (gal)", station="Station Code", direction="Dir.", origin="Origin Time",
         start="Record Time", magnitude="Mag.",
     ),
     needed=("rate", "duration", "scale"),

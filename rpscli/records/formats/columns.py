@@ -90,6 +90,8 @@ def recognises_columns(text: RecordText) -> bool:
     """True if most lines, and the last that is no comment, hold nothing but numbers."""
     body = [_plain(line) for line in text.lines if line.strip() and not _is_comment(line)]
     numeric = sum(1 for line in body if numbers_in(line))
+    if len(body) == 1 and len(numbers_in(body[0]) or []) >= FEWEST_IN_A_LINE:
+        return True
     return numeric >= 2 and 2 * numeric > len(body) and bool(numbers_in(body[-1]))
 
 
@@ -107,6 +109,7 @@ def read_columns(text: RecordText) -> GroundMotion:
         return _columns(text, table, titles)
     text.single_channel()
     doubts = [] if width == 1 and even else [_wrapped(text, table)]
+    doubts += _blank_within(text, table)
     title = titles[0] if width == 1 and titles else None
     stated = _stated(text, table, title)
     values = table.values
@@ -298,7 +301,34 @@ def _rows(text: RecordText) -> _Rows:
                 f" finite numbers{why_no_numbers(line)}; begin comments with #",
                 index,
             )
+    if len(rows.widths) == 1 and rows.widths[0] >= FEWEST_IN_A_LINE:
+        _part(rows)
     return rows
+
+
+FEWEST_IN_A_LINE = 16
+"""Values of a record that stands in one line."""
+
+
+def _part(rows: _Rows) -> None:
+    """Make of one line of values as many rows of one."""
+    count = rows.widths[0]
+    rows.widths = array("q", [1] * count)
+    rows.lines = array("q", [rows.lines[0]] * count)
+
+
+def _blank_within(text: RecordText, table: _Table) -> list[str]:
+    """A doubt about blank lines that part the values, as two records in one file do."""
+    behind = np.flatnonzero(np.diff(table.lines) > 1)
+    blank = [
+        int(table.lines[place])
+        for place in behind
+        if not text.lines[int(table.lines[place]) + 1].strip()
+    ]
+    if not blank:
+        return []
+    doubt = f"a blank line behind line {blank[0] + 1} parts the values, which are read as"
+    return [f"{doubt} one record: keep one record in a file"]
 
 
 def _move_count_and_step(text: RecordText, rows: _Rows) -> None:

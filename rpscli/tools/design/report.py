@@ -274,11 +274,7 @@ def design_columns(answer: Answer) -> list[Column]:
 
 
 MARKS = (
-    ((
-        "no"
-        " valid"
-        " case"
-    ), "x", style.GREY), ("fails", "v", style.RED), ("passes", "o", style.BLUE),
+    ("no valid case", "x", style.GREY), ("fails", "v", style.RED), ("passes", "o", style.BLUE),
 )  # fmt: skip
 MOST_PAIRS = 6
 SHARES = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)

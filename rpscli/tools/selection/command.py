@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
@@ -232,6 +233,14 @@ class Chosen(NamedTuple):
     left_out: dict[str, dict[str, int]]
     selection: Selection
 
+    @property
+    def name(self) -> str:
+        """Of its folder: by the case and the target, so that no other is replaced."""
+        case = self.asked.case_source
+        words = [Path(case).stem] if case else []
+        text = "_".join([*words, self.selection.target.name])
+        return re.sub(r"[^A-Za-z0-9.]+", "_", text).strip("_") or "target"
+
 
 def _chosen(asked: SelectionOptions, terminal: Terminal) -> Chosen:
     """The motions of the sources that fit the target best."""
@@ -298,7 +307,7 @@ def _conclude(chosen: Chosen, out: Output) -> None:
 
     selection = chosen.selection
     structure = chosen.request.structure
-    place = out.place or RESULTS / "selection" / "record_select"
+    place = out.place or RESULTS / "selection" / chosen.name
     folder = OutputFolder(place, _run(chosen), force=out.force)
     folder.add_all(report.selection_files(selection, place, out.look))
     out.terminal.warn(report.selection_doubts(selection, structure and structure.fixed))
