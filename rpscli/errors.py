@@ -213,7 +213,7 @@ and squares would overflow."""
 
 
 def is_size(value: object) -> bool:
-    """Whether a value is a number above zero that follows from
+    """True if a value is a number above zero that follows from
     what a building may have.
     """
     return is_number(value) and SMALLEST**2 <= value <= LARGEST**2

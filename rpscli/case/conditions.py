@@ -51,7 +51,7 @@ class Condition:
 
     @property
     def from_below(self) -> bool:
-        """Whether small values are bad."""
+        """True if small values are bad."""
         return self.name in LIMITS and LIMITS[self.name].from_below
 
     @property

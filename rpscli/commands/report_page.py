@@ -429,7 +429,7 @@ def _changed_inputs(
 def _differing_results(
     folder: Path, before: Mapping[str, Any], now: Mapping[str, Any]
 ) -> Iterator[Block]:
-    """How many stored results are the same as those of now, and a table of the others."""
+    """Number of stored results that are those of now, and a table of the others."""
     # By what the record was scaled is a result; the aim that asked for it is computed
     # once.
     names = [name for name in before if name in now and name != "record.scaled_to"]

@@ -108,7 +108,7 @@ def expression(body: Body, node: ast.expr) -> Value:
 
 
 def placed(error: NotInLanguage, body: Body, node: ast.AST) -> NotInLanguage:
-    """The same error with file and line, unless it has them already."""
+    """An error with file and line, which it may have already."""
     if len(error.args) == 1:
         return NotInLanguage(
             error.args[0], f"{body.scope.file}:{getattr(node, 'lineno', 0)}"
@@ -374,7 +374,7 @@ OF_KNOWN: dict[type, Callable[[Any, Any], Any]] = {
 
 
 def is_true(value: Known) -> bool:
-    """Whether something known counts as true."""
+    """True if something known counts as true."""
     try:
         return bool(value.value)
     except ValueError as error:
@@ -382,7 +382,7 @@ def is_true(value: Known) -> bool:
 
 
 def compared(body: Body, of: ast.cmpop, one: Value, other: Value) -> Value:
-    """Whether a comparison holds."""
+    """True if a comparison holds."""
     if isinstance(one, Known) and isinstance(other, Known) and type(of) in OF_KNOWN:
         return Known(bool(OF_KNOWN[type(of)](one.value, other.value)))
     if isinstance(of, (ast.In, ast.NotIn)):
@@ -401,7 +401,7 @@ def compared(body: Body, of: ast.cmpop, one: Value, other: Value) -> Value:
 def contained(
     body: Body, of: ast.cmpop, one: Value, others: tuple[Value, ...] | None
 ) -> Value:
-    """Whether a number is one of a tuple's."""
+    """True if a number is one of a tuple's."""
     if others is None:
         refuse("`in`: followed by a tuple")
     found: Value = Known(False)  # noqa: FBT003 -- a number
@@ -418,12 +418,12 @@ SLOW = ast.Call, ast.Subscript, ast.Div, ast.Pow, ast.FloorDiv, ast.Mod
 
 
 def is_simple(node: ast.expr) -> bool:
-    """Whether an expression may be computed where its value is not needed."""
+    """True if an expression may be computed where its value is not needed."""
     return not any(isinstance(each, SLOW) for each in ast.walk(node))
 
 
 def has_call(node: ast.expr) -> bool:
-    """Whether an expression calls a function."""
+    """True if an expression calls a function."""
     return any(isinstance(each, ast.Call) for each in ast.walk(node))
 
 

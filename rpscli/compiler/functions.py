@@ -269,12 +269,12 @@ def structure(kinds: list[str]) -> str:
 
 
 def is_known(value: Value) -> bool:
-    """Whether a value is a known number."""
+    """True if a value is a known number."""
     return isinstance(value, Known) and is_number(value.value)
 
 
 def belongs(function: Any, value: Value) -> bool:
-    """Whether an argument is part of the version: a known number of a
+    """True if an argument is part of the version: a known number of a
     function that is inlined.
     """
     return function in _inlined and is_known(value)
@@ -289,7 +289,7 @@ def known_part(function: Any, value: Value) -> Any:
 
 
 def takes_float(parameter: ast.arg) -> bool:
-    """Whether a parameter is annotated as a float: ints that
+    """True if a parameter is annotated as a float: ints that
     it is given become floats.
     """
     return (
@@ -358,7 +358,7 @@ def found_in_file(function: Any, code: Any) -> ast.FunctionDef:
 
 
 def is_lambda(function: Any, node: ast.Lambda) -> bool:
-    """Whether a nameless function is that of a place in its file."""
+    """True if a nameless function is that of a place in its file."""
     code = function.__code__
     if function.__name__ != "<lambda>" or node.lineno != code.co_firstlineno:
         return False
@@ -411,17 +411,17 @@ def in_place(
 
 
 def is_short(node: ast.expr | None) -> bool:
-    """Whether an expression is small enough to be written in place of a call."""
+    """True if an expression is small enough to be written in place of a call."""
     return node is not None and sum(1 for _ in ast.walk(node)) <= SHORT
 
 
 def has_effects(node: ast.expr) -> bool:
-    """Whether an expression may need more than the block that it begins in."""
+    """True if an expression may need more than the block that it begins in."""
     return any(isinstance(each, (ast.BoolOp, ast.IfExp)) for each in ast.walk(node))
 
 
 def is_text(node: ast.stmt) -> bool:
-    """Whether a statement is a docstring."""
+    """True if a statement is a docstring."""
     return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
 
 
@@ -453,7 +453,7 @@ def written_with(
     widened: dict[str, Kind],
     result: str | None,
 ) -> tuple[str, Kind]:
-    """The same, where some variables are known to be of wider kinds."""
+    """A function written with some variables known to be of wider kinds."""
     node = tree_of(function)
     body = Statements(program, scope_of(function, {}), node, widened)
     taken: list[str] = []

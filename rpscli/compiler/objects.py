@@ -39,7 +39,7 @@ def processor() -> str:
 
 
 def can_fuse() -> bool:
-    """Whether the processor has an instruction for `fma`; else a
+    """True if the processor has an instruction for `fma`; else a
     function does it, slowly.
     """
     return bool(llvm.get_host_cpu_features().get("fma", True))

@@ -81,7 +81,7 @@ class Statements(Body):
 
 
 def assignments(node: ast.FunctionDef | ast.For) -> Counter[str]:
-    """How often each name of a function is assigned to; twice, if at once read."""
+    """Counts of assignments to each name of a function; two, if at once read."""
     found: Counter[str] = Counter()
     for each in ast.walk(node):
         if each is node and isinstance(node, ast.For):
@@ -366,7 +366,7 @@ def repeat(body: Statements, node: ast.While) -> None:
 
 
 def expression_is_false(body: Statements, node: ast.expr) -> bool:
-    """Whether a test without variables is known to fail: then its
+    """True if a test without variables is known to fail: then its
     statements are not looked at.
     """
     if any(

@@ -116,7 +116,7 @@ NUMBERS = bool, int, float, np.bool_, np.int64, np.float64
 
 
 def is_number(value: object) -> bool:
-    """Whether something known is a number of the language: no
+    """True if something known is a number of the language: no
     narrower one, nothing derived.
     """
     return type(value) in NUMBERS
@@ -265,7 +265,7 @@ class Code:
         self.allocas: list[str] = []
         self.block = "entry"
         self.ended = False
-        """Whether the present block is left: what follows is never reached."""
+        """True if the present block is left: what follows is never reached."""
         self._count = 0
 
     def new(self, name: str) -> str:

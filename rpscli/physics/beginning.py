@@ -135,7 +135,7 @@ def stand_upright(s: Record, l: int) -> None:
 
 @compiled
 def load_turning(s: Record, l: int, system: Record) -> None:
-    """How a tilt to any side goes round upright: kappa, and K on a bed."""
+    """Set kappa of a tilt to any side that goes round upright, and K on a bed."""
     s.kappa[l] = 1.0
     if ways_of(s) == 1:
         return

@@ -152,7 +152,7 @@ def measures_at_end(s: Record, l: int) -> Measures:
 
 @inlined
 def contacts_may_rise(s: Record, l: int, found: Measures) -> bool:
-    """Whether measures at the end of the step, and what they may be more
+    """True if measures at the end of the step, and what they may be more
     within it, come near the largest.
     """
     springs = s.axes > ways_of(s)
@@ -326,7 +326,7 @@ def raise_by(s: Record, l: int, found: Measures) -> None:
 
 @compiled
 def is_held(s: Record, l: int) -> bool:
-    """Whether a storey at rest is held: one that lifts off at once has not stood."""
+    """True if a storey at rest is held: one that lifts off at once has not stood."""
     if is_gripped(s, l):
         return bool(grip_at(s, l, 0).margin >= 0.0)
     R = 0.5 * s.diameter[l]

@@ -60,7 +60,7 @@ def beam_at(
 
 @compiled
 def beam_now(s: Record, l: int) -> Beam:
-    """The same at the start of the step."""
+    """Displacement and velocity of the beam at the start of the step."""
     return beam_at(s, l, tilt_of(s, l), rate_of(s, l))
 
 
@@ -198,7 +198,7 @@ def energy_at(
 
 @compiled
 def total_energy(s: Record, l: int, system: Record) -> float:
-    """The same at the start of the step, with what plastic drifts change."""
+    """Total energy at the start of the step, with what plastic drifts change."""
     look_at(s, l)
     energy = energy_at(s, l, system, tilt_of(s, l), rate_of(s, l))
     return energy + slip_energy(s, l)

@@ -143,7 +143,7 @@ def relief_path(s: Record, l: int) -> Quintic:
 
 @inlined
 def surely_held(s: Record, l: int) -> bool:
-    """Whether the margin of a lane at rest surely stays positive over the step."""
+    """True if the margin of a lane at rest surely stays positive over the step."""
     start = g_up_at(s, l, s.time[l])
     end = start + s.h[l] * s.g_up_slope[l]
     x = push_path(s, l, 0)
@@ -176,7 +176,7 @@ round it, but for rounding."""
 
 @inlined
 def falls(s: Record, l: int) -> bool:
-    """Whether a tilt to any side approaches upright at the start of the step."""
+    """True if a tilt to any side approaches upright at the start of the step."""
     x, y = rate_of(s, l)
     least = CIRCLING * CIRCLING * (x * x + y * y)
     v = s.v[l]
@@ -206,7 +206,7 @@ def check_steps(s: Record, systems: Record, stands: bool) -> None:
 
 @compiled
 def check_all_steps(s: Record) -> None:
-    """The same of any lanes."""
+    """Check the steps of all lanes."""
     for l in range(lanes_of(s)):
         moves = s.moves[l] > 0.0
         path, low, high = path_in_range(s, l)
@@ -297,7 +297,7 @@ def watched_path(s: Record, l: int, which: int) -> tuple[bool, Quintic]:
 
 @compiled
 def may_change(s: Record, l: int) -> bool:
-    """Whether a device may change its law in the step."""
+    """True if a device may change its law in the step."""
     for which in range(WATCHED):
         if not may_be_watched(s, l, which):
             continue

@@ -57,7 +57,7 @@ def axis_of(j: int) -> int:
 
 @inlined
 def is_resultant(s: Record, j: int) -> bool:
-    """Whether a row of demands is of resultants of both directions."""
+    """True if a row of demands is of resultants of both directions."""
     return False if ways_of(s) == 1 else j == 0
 
 
@@ -69,7 +69,7 @@ def reach(one: float, other: float) -> float:
 
 @inlined
 def floors_may_rise(s: Record, l: int) -> bool:
-    """Whether the sums, and what they may be within the step, leave
+    """True if the sums, and what they may be within the step, leave
     room for a larger demand.
     """
     rises = s.marked[l] > 0
@@ -204,7 +204,9 @@ def raise_row(s: Record, l: int, systems: Record, kind: int, j: int) -> bool:
 
 @compiled
 def raise_floors_within(s: Record, l: int, systems: Record) -> None:
-    """The same by those at start, middle and end, and of a parabola through them."""
+    """Raise the demands of floors by those at start, middle and end of a step, and of a
+    parabola through them.
+    """
     parts = parts_of(s, l)
     for part in range(parts):
         raise_floors_between(s, l, systems, part / parts, (part + 1) / parts)
@@ -214,7 +216,7 @@ def raise_floors_within(s: Record, l: int, systems: Record) -> None:
 def raise_floors_between(
     s: Record, l: int, systems: Record, begin: float, end: float
 ) -> None:
-    """The same between fractions of the step."""
+    """Raise the demands of floors by those between fractions of the step."""
     n = s.n
     rows = s.between
     for axis in range(ways_of(s)):

@@ -97,7 +97,7 @@ def follow_many(
     results: Record,
     output: Output,
 ) -> None:
-    """The same, side by side (`groups`)."""
+    """Follow histories side by side (`groups`)."""
     moving = state[MOVING]
     standing = state[STANDING]
     for k in range(state.shape[0]):
@@ -258,7 +258,7 @@ def accept_steps(s: Record) -> None:
 
 @inlined
 def accept_tilts(s: Record) -> None:
-    """The same of the tilt."""
+    """Begin the next step of accepted lanes with the tilt at the end of this one."""
     lanes = lanes_of(s)
     for axis in range(ways_of(s)):
         for l in range(lanes):
@@ -277,7 +277,9 @@ def accept_tilts(s: Record) -> None:
 
 @inlined
 def accept_floors(s: Record) -> None:
-    """The same of modes, base shears and sums of demands."""
+    """Begin the next step of accepted lanes with modes, base shears and sums of demands
+    at the end of this one.
+    """
     lanes = lanes_of(s)
     for axis in range(ways_of(s)):
         for l in range(lanes):
@@ -407,7 +409,7 @@ def review_laws(s: Record, l: int, systems: Record, kind: int) -> None:
 
 @compiled
 def too_many(s: Record, l: int, system: Record) -> bool:
-    """Whether events pile up; sets the outcome."""
+    """True if events pile up; sets the outcome."""
     events = 0
     for i in range(EVENT_KINDS):
         events += s.events[i, l]

@@ -66,7 +66,7 @@ def force_at_rest(s: Record, l: int) -> tuple[float, float]:
 
 @inlined
 def is_gripped(s: Record, l: int) -> bool:
-    """Whether friction holds a tilt that may be to any side (13.25)."""
+    """True if friction holds a tilt that may be to any side (13.25)."""
     return False if ways_of(s) == 1 else s.phase[l] == STUCK
 
 
@@ -233,7 +233,7 @@ def sticks(s: Record, l: int, log: Record) -> bool:
 
 
 class Grip(NamedTuple):
-    """How a tilt at rest is held, over N m_c R^2 [1/s2]."""
+    """Hold of friction on a tilt at rest, over N m_c R^2 [1/s2]."""
 
     used: float  # the part of what friction could do: it holds up to 1
     # P |W d| + M - Q.d, where d is the vector for which that is least at used = 1
@@ -283,8 +283,7 @@ def grip_of(
     g_felt: tuple[float, float],
     less: float,
 ) -> Grip:
-    """How a tilt at rest is held under z of what is not friction,
-    and g_f, with their rates.
+    """Hold on a tilt at rest under z of what is not friction, and g_f, with their rates.
 
     Of the dampers' part `less` may not be asked for [1/s2].
     """
@@ -326,7 +325,7 @@ ROUNDING = 1e-13
 
 @compiled
 def grip_at(s: Record, l: int, end: int) -> Grip:
-    """How a lane is held at the start (0) or at the end (1) of its step."""
+    """Hold on a lane at the start (0) or at the end (1) of its step."""
     z, z_rate = z_at(s, l, end)
     g_felt, g_rate, _ = felt_at(s, l, end)
     return grip_of(s, l, z, z_rate, (g_felt, g_rate), 0.0)

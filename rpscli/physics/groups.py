@@ -36,7 +36,7 @@ def standing_is_next(moving: Record, standing: Record) -> bool:
 
 @inlined
 def is_called(s: Record) -> bool:
-    """Whether a state has room for a history that waits for it."""
+    """True if a state has room for a history that waits for it."""
     return (s.active < lanes_of(s)) & (s.active < s.present)  # type: ignore[no-any-return]
 
 

@@ -38,7 +38,7 @@ _loading = Lock()
 
 
 def are_interpreted() -> bool:
-    """Whether kernels run as Python, for a debugger."""
+    """True if kernels run as Python, for a debugger."""
     return any(os.environ.get(name, "0") not in {"", "0"} for name in INTERPRETED)
 
 
@@ -104,7 +104,7 @@ def kept() -> Any:
 
 
 def is_ready(ways: int, lanes: int) -> bool:
-    """Whether calling a kernel starts at once: it is loaded, kept on
+    """True if calling a kernel starts at once: it is loaded, kept on
     disk, or runs as Python.
     """
     if are_interpreted() or (ways, lanes) in _loaded:

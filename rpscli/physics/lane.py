@@ -57,7 +57,7 @@ def lanes_of(s: Record) -> int:
 
 @compiled
 def stands(s: Record, l: int) -> bool:
-    """Whether the tilt of a lane is held: on rigid ends upright, or by friction."""
+    """True if the tilt of a lane is held: on rigid ends upright, or by friction."""
     return bool(s.phase[l] == FULL_CONTACT or s.phase[l] == STUCK)
 
 
@@ -105,7 +105,7 @@ def sign_of(s: Record, l: int) -> float:
 
 @inlined
 def is_cone(s: Record, l: int) -> bool:
-    """Whether a lane passes upright as a cone's tip: rigid ends that tilt to any side."""
+    """True if a lane passes upright as a cone's tip: rigid ends that tilt to any side."""
     return False if ways_of(s) == 1 else s.cone[l] > 0.0
 
 
@@ -256,7 +256,7 @@ def z_of(s: Record, l: int, force: float, a_g: float) -> float:
 
 @inlined
 def z_vector(s: Record, l: int, force: Vector, a_g: Vector) -> Vector:
-    """The same in x and y."""
+    """z in x and y."""
     return z_of(s, l, force[0], a_g[0]), z_of(s, l, force[1], a_g[1])
 
 
@@ -384,7 +384,7 @@ def respond(
 def move_in_plane(
     s: Record, l: int, at: Place, arms: float, tilt: Polar, z: Vector
 ) -> Motion:
-    """How a tilt that is free moves in one plane, of what weight turns it back by."""
+    """Motion of a free tilt in one plane, of what weight turns it back by."""
     p = tilt.p
     diameter = s.diameter[l]
     held = arms + bed_along(ends_of(s, l), tilt.x, p) - s.turning[l]
@@ -398,7 +398,7 @@ def move_in_plane(
 def move_to_any_side(
     s: Record, l: int, at: Place, arms: float, tilt: Polar, z: Vector
 ) -> Motion:
-    """How it moves where the tilt may be to any side."""
+    """Motion of a free tilt to any side."""
     x, n, t, _, _ = tilt
     diameter = s.diameter[l]
     ends = ends_of(s, l)

@@ -23,7 +23,7 @@ from rpscli.physics.within import tilt_within
 
 @inlined
 def is_signed(s: Record, l: int) -> bool:
-    """Whether the tilt goes to either side: in one plane, in full contact on a bed."""
+    """True if the tilt goes to either side: in one plane, in full contact on a bed."""
     return False if ways_of(s) == 2 else s.bed_k[l] > 0.0
 
 

@@ -1,4 +1,4 @@
-"""How long the next step of a lane is."""
+"""Length of the next step of a lane."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How structured records lie in memory: their types, arrays, the scratch of a thread.
+"""Layout of structured records in memory: their types, arrays, the scratch of a thread.
 
 Sizes are part of a record's type: `ways`, the horizontal directions in which the ground
 moves, and the lanes are so known when the kernel is compiled, which is one source for all

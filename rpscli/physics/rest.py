@@ -22,7 +22,7 @@ larger tilt can come [s]."""
 
 @compiled
 def is_over(s: Record, l: int, systems: Record) -> bool:
-    """Whether no later moment of the free vibration can bring a new maximum.
+    """True if no later moment of the free vibration can bring a new maximum.
 
     Of what wobbles only the tilt is looked at: rigid ends lose nothing as it goes on.
 
@@ -65,7 +65,7 @@ def largest_force(s: Record, l: int, axis: int) -> float:
 
 @compiled
 def stays_down(s: Record, l: int) -> bool:
-    """Whether the freely vibrating building can never again
+    """True if the freely vibrating building can never again
     push hard enough to let go.
     """
     square = 0.0
@@ -89,7 +89,7 @@ def stays_down(s: Record, l: int) -> bool:
 
 @compiled
 def weights_stand(s: Record, l: int) -> bool:
-    """Whether free vibration upwards can bring no new force of a contact."""
+    """True if free vibration upwards can bring no new force of a contact."""
     if s.axes == ways_of(s):
         return True
     upper = s.cap_beam_mass[l] + s.floors_mass[l]
@@ -108,7 +108,7 @@ def spare_strength(s: Record, l: int, r: int) -> float:
 
 @compiled
 def demands_stand(s: Record, l: int, systems: Record) -> bool:
-    """Whether free vibration in full contact can raise no storey
+    """True if free vibration in full contact can raise no storey
     shear and no acceleration.
     """
     rows = rows_of(s)
@@ -144,7 +144,7 @@ def demands_stand(s: Record, l: int, systems: Record) -> bool:
 
 @compiled
 def tilts_no_more(s: Record, l: int, system: Record) -> bool:
-    """Whether the energy no longer suffices for a larger tilt, or for theta_cr."""
+    """True if the energy no longer suffices for a larger tilt, or for theta_cr."""
     level = min(s.max_theta[l], s.theta_cr[l])
     of = system.rolling if level < system.beta else system.rocking
     lift = s.diameter[l] * (of[4] + of[0] * math.sin(level) - of[1] * math.cos(level))
@@ -164,7 +164,7 @@ def hardened_energy(s: Record, l: int) -> float:
 
 @compiled
 def rests_on_bed(s: Record, l: int, systems: Record) -> bool:
-    """Whether free vibration in full contact can bring nothing new:
+    """True if free vibration in full contact can bring nothing new:
     energy bounds all of it.
 
     All springs together hold no more than the energy, nor do all masses: with E = v^2/2

@@ -29,7 +29,7 @@ from rpscli.physics.storeys import base_slip
 
 @inlined
 def stands_exactly(s: Record, l: int) -> bool:
-    """Whether a lane takes the exact step: it stands, and no storey yields."""
+    """True if a lane takes the exact step: it stands, and no storey yields."""
     return (s.phase[l] == FULL_CONTACT) & (s.marked[l] == 0)  # type: ignore[no-any-return]
 
 
@@ -72,8 +72,8 @@ each is followed by itself."""
 def creeping_responses(
     slow: float, fast: float, h: float
 ) -> tuple[float, float, float, float]:
-    """The same of an oscillator that is damped beyond its critical
-    damping, by its two rates.
+    """Responses of an oscillator that is damped beyond its critical damping, by its two
+    rates.
     """
     apart = fast - slow
     S = math.exp(-slow * h) * -math.expm1(-apart * h) / apart
@@ -106,8 +106,8 @@ def decayed_twice(rate: float, h: float) -> float:
 def responses_by_series(
     omega2: float, c: float, h: float
 ) -> tuple[float, float, float, float]:
-    """The same by powers of h, whose factors follow from each other
-    by the equation of motion.
+    """Responses by powers of h, whose factors follow from each other by the equation of
+    motion.
     """
     S = 0.0
     I = 0.0

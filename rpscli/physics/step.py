@@ -79,20 +79,20 @@ def find(s: Record, at: float, weight: float, equipped: bool) -> None:
 
 @compiled
 def accelerate(s: Record, at: float) -> None:
-    """The same without devices."""
+    """Accelerations at a stage of lanes without devices."""
     find(s, at, 0.0, False)
 
 
 @compiled
 def accelerate_equipped(s: Record, at: float, weight: float) -> None:
-    """The same with devices."""
+    """Accelerations at a stage of lanes with devices."""
     find(s, at, weight, True)
 
 
 @inlined
 def terms(s: Record, k: int) -> int:
-    """How many terms the sums up to stage k have: for loops over
-    lanes a number that is known.
+    """Number of terms of the sums up to stage k: for loops over lanes a number that is
+    known.
     """
     return END if lanes_of(s) > 1 else k
 

@@ -130,7 +130,7 @@ def change(s: Record, l: int, systems: Record, log: Record) -> None:
 
 @compiled
 def is_upright(s: Record, l: int, system: Record) -> bool:
-    """Whether the range of the present phase ends upright."""
+    """True if the range of the present phase ends upright."""
     if s.phase[l] == BEDDED or system.compliant > 0:
         return False
     return bool(s.phase[l] == ROLLING or system.beta == 0.0)

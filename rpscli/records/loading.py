@@ -282,7 +282,7 @@ def _beside(first: GroundMotion, second: GroundMotion, source: str) -> GroundMot
 
 
 def _differ(origins: tuple[float | None, float | None]) -> bool:
-    """Whether two origins are more than a minute apart."""
+    """True if two origins are more than a minute apart."""
     one, other = origins
     return one is not None and other is not None and abs(one - other) > 60.0
 

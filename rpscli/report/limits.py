@@ -74,14 +74,14 @@ def verdict_text(verdict: Verdict) -> str:
 
 
 def _shown_by(verdict: Verdict) -> str:
-    """How many recordings, or events, would show that a limit is
-    met: with no more beyond.
+    """Number of recordings, or events, that would show that a limit is met: with no more
+    beyond.
     """
     return f"; {verdict.shown_by} would show it" if verdict.shown_by else ""
 
 
 def worst_text(verdict: Verdict) -> str:
-    """How many of several records are beyond a limit, and the worst of them."""
+    """Number of several records beyond a limit, and the worst of them."""
     which = "least" if verdict.condition.from_below else "largest"
     value = reached_text(verdict.condition, verdict.value, verdict.overturned)
     worst = f", {which} {value} ({verdict.record})"
@@ -105,7 +105,7 @@ def excess_text(verdict: Verdict) -> str:
 
 
 def verdicts_in_short(verdicts: Sequence[Verdict], of: str = "") -> str:
-    """How many limits of something are exceeded, or met, or met without being shown."""
+    """Numbers of limits of something that are exceeded, met, or met without being shown."""
     if not verdicts:
         return "No limits were set."
     what = f"{len(verdicts)} limits{of}"

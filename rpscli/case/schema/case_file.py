@@ -349,7 +349,7 @@ class PodiumSection(Section):
 
     @property
     def without_cap_beam(self) -> bool:
-        """Whether the columns stand free."""
+        """True if the columns stand free."""
         return self.cap_beam_mass_ratio == 0.0 or self.cap_beam_mass == 0.0
 
 

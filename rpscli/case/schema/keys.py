@@ -196,7 +196,7 @@ def unit(key: str) -> str:
 
 
 def is_whole(key: str) -> bool:
-    """Whether a case key holds whole numbers."""
+    """True if a case key holds whole numbers."""
     return any(isinstance(mark, Whole) for mark in _marks_of(key))
 
 

@@ -120,7 +120,7 @@ class Document:
         return value
 
     def has(self, path: Path) -> bool:
-        """Whether a value is written at a path."""
+        """True if a value is written at a path."""
         return self.at(path) is not MISSING
 
     def key_place(self, path: Path) -> Place:

@@ -391,7 +391,7 @@ history_film_options = gathered("film", _film, *((*_PART, *_FILM) if _FILMED els
 
 @dataclass(frozen=True)
 class RunChoices:
-    """How a study is run."""
+    """Choices of the run of a study."""
 
     jobs: int | None = None
     scheduler: str | None = None

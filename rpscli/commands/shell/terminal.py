@@ -53,7 +53,7 @@ GAP = 3
 
 
 def _columns_asked() -> bool:
-    """Whether COLUMNS says a width; 0 and words say none."""
+    """True if COLUMNS says a width; 0 and words say none."""
     return os.environ.get("COLUMNS", "").isdigit() and int(os.environ["COLUMNS"]) > 0
 
 

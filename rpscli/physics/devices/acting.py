@@ -47,7 +47,7 @@ velocities in proportion, except where it tilts more slowly than this."""
 
 @inlined
 def has_friction(s: Record, l: int) -> bool:
-    """Whether something holds the tilt at rest."""
+    """True if something holds the tilt at rest."""
     return s.friction_force[l] + s.friction_moment[l] > 0.0  # type: ignore[no-any-return]
 
 

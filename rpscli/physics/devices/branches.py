@@ -28,7 +28,7 @@ WATCHED = SLOWING + 1
 
 @inlined
 def may_be_watched(s: Record, l: int, which: int) -> bool:
-    """Whether a number is one of a device that is there, or of the tilt."""
+    """True if a number is one of a device that is there, or of the tilt."""
     return which in (0, SLOWING) or (which - 1) % SLOTS < s.devices[l]
 
 

@@ -65,7 +65,7 @@ def no_other(s: Record, l: int, i: int, second: bool) -> tuple[int, int]:
 
 @inlined
 def is_apart(s: Record, l: int, i: int) -> bool:
-    """Whether a device is looked at by itself: its law has branches or powers."""
+    """True if a device is looked at by itself: its law has branches or powers."""
     return s.apart[i, l] > 0.0  # type: ignore[no-any-return]
 
 

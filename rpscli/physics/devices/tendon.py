@@ -134,7 +134,7 @@ def reset_yielded_tendons(s: Record, l: int) -> None:
 
 @compiled
 def any_yields(s: Record, l: int) -> bool:
-    """Whether a tendon of a lane yields."""
+    """True if a tendon of a lane yields."""
     found = False
     for i in range(s.devices[l]):
         found |= (s.device_kind[i, l] == TENDON) & (s.branch[i, l] == BEYOND)

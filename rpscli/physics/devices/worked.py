@@ -1,4 +1,4 @@
-"""How the devices of a lane are worked at a motion."""
+"""Stroke, rate and height of the devices of a lane at a motion."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rpscli.physics.state import FULL_CONTACT, Record
 
 
 class Worked(NamedTuple):
-    """How the devices of a lane are worked at a motion."""
+    """Strokes and rates at which the devices of a lane are worked."""
 
     tilt: Polar
     path: float  # |u_b| [m]
@@ -31,7 +31,7 @@ class Worked(NamedTuple):
 def worked(
     s: Record, l: int, tilt: tuple[float, float], rate: tuple[float, float]
 ) -> Worked:
-    """How devices are worked at a tilt and its rate."""
+    """Strokes and rates of devices at a tilt and its rate."""
     now = polar(s, l, tilt, rate)
     diameter = s.diameter[l]
     if s.phase[l] == FULL_CONTACT:

@@ -85,7 +85,7 @@ def end_displacement(
     rolled: tuple[Value, Value, Value],
     turned: tuple[Value, Value],
 ) -> tuple[Value, Value, Value]:
-    """How far the middle of an end moves across and upwards, and the contact from there.
+    """Ways of the middle of an end across and upwards, and of the contact from there.
 
     Parameters
     ----------

@@ -215,7 +215,7 @@ def _cells(line: str, separator: str) -> list[str]:
 
 
 def _are_titles(titles: list[Title], *, above: bool, apart: bool) -> bool:
-    """Whether a line of words is one of titles: by what they say, or where they stand.
+    """True if a line of words is one of titles: by what they say, or where they stand.
 
     Words right `above` the numbers are titles if something other than a single blank is
     between them; else one of them has to be understood.

@@ -81,7 +81,7 @@ class Cell(NamedTuple):
 
 
 def _share(histories: Histories) -> Cell:
-    """How many overturned."""
+    """Share that overturned."""
     share = histories.overturned
     ends = {";low": share.low, ";high": share.high}
     counts = {

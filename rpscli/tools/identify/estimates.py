@@ -17,7 +17,7 @@ class Estimate(NamedTuple):
 
     @property
     def determined(self) -> bool:
-        """Whether its interval has a width, and one below the value."""
+        """True if its interval has a width, and one below the value."""
         return 0.0 < self.high - self.low < abs(self.value)
 
 
