@@ -214,21 +214,21 @@ class PodiumStructure(Shown):
 
     @cached_property
     def across(self) -> PodiumStructure:
-        """This podium under what vibrates in y."""
+        """The podium under what vibrates in y."""
         return (
             self if self.superstructure_y is None else self._under(self.superstructure_y)
         )
 
     @cached_property
     def upwards(self) -> PodiumStructure | None:
-        """This podium under what vibrates upwards; None where floors ride on the cap
+        """The podium under what vibrates upwards; None where floors ride on the cap
         beam.
         """
         above = None if self.superstructure is None else self.superstructure.upwards
         return None if above is None else self._under(above)
 
     def _under(self, above: Superstructure) -> PodiumStructure:
-        """This podium under another building; joints keep their stiffness."""
+        """The podium under another building; joints keep their stiffness."""
         joint = None if self.bed is None else self.bed.stiffness
         contact = replace(
             self.contact, period_ratio=None, settlement=None, stiffness=joint

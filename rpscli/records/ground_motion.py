@@ -184,7 +184,7 @@ class GroundMotion(Shown):
         return digest.hexdigest()
 
     def resampled(self, dt: float) -> GroundMotion:
-        """This motion, linear between its samples, sampled every `dt` seconds.
+        """The motion, linear between its samples, sampled every `dt` seconds.
 
         A step that is a whole part of the old one changes nothing but the number of
         samples; a longer one, up to the duration, loses what is between, and says so.
@@ -213,13 +213,13 @@ class GroundMotion(Shown):
         return replace(made, warnings=(*self.warnings, lost))
 
     def finer(self, parts: int) -> GroundMotion:
-        """This motion with that many even parts in each sampling interval."""
+        """The motion with that many even parts in each sampling interval."""
         at = np.arange((self.npts - 1) * parts + 1) / parts
         values = np.interp(at, np.arange(self.npts), self.acceleration)
         return replace(self, acceleration=values, dt=self.dt / parts)
 
     def scaled(self, factor: float) -> GroundMotion:
-        """This motion times `factor`, with a description that says so."""
+        """The motion times `factor`, with a description that says so."""
         if not is_number(factor):
             raise RecordError(
                 f"{self.source}: the factor {told(factor)} must be a finite number"
@@ -244,7 +244,7 @@ class GroundMotion(Shown):
         second: GroundMotion | None = None,
         of: Of = "rotd50",
     ) -> GroundMotion:
-        """This motion, scaled so that a measure of it, or of its pair, has a value.
+        """The motion, scaled so that a measure of it, or of its pair, has a value.
 
         Parameters
         ----------
@@ -361,7 +361,7 @@ class MotionComponents(Frozen):
         return hashlib.sha256("|".join(parts).encode()).digest()
 
     def finer(self, parts: int) -> MotionComponents:
-        """This motion with that many even parts in each sampling interval."""
+        """The motion with that many even parts in each sampling interval."""
         return self if parts == 1 else self._each(lambda motion: motion.finer(parts))
 
     def scaled(self, factor: float) -> MotionComponents:

@@ -308,17 +308,17 @@ class Source(Query):
         return self.require((*allowed, *COMMON), FLAGS)
 
     def without(self, *names: str) -> Source:
-        """This source without some options."""
+        """The source without some options."""
         kept = {name: value for name, value in self.values.items() if name not in names}
         return Source(self.scheme, self.place, kept)
 
     def plus(self, **options: str | None) -> Source:
-        """This source with further options, in place of those of the same names."""
+        """The source with further options, in place of those of the same names."""
         kept = self.without(*options).values
         return Source(self.scheme, self.place, {**kept, **options})
 
     def at(self, place: str) -> Source:
-        """This source at another place."""
+        """The source at another place."""
         return Source(self.scheme, place, self.values)
 
     @property
