@@ -309,7 +309,7 @@ def test_what_moves_the_worst_history_stands_on_its_page(rps, rps_json, monkeypa
     rps("report", "small.yaml", *given, "--budget", "-o", "out.html", exit_code=10)
     found = rps_json("budget", "small.yaml", *given[2:], *given[:2], "--figures", "none")
     text = text_of("out.html")
-    assert "What moves rotation_ratio under sine_T0.8s_a0.4g" in text
+    assert "What moves the results under sine_T0.8s_a0.4g" in text
     for result in found["results"]:
         assert result["sentences"] in text
     assert re.search(r"rps report small.yaml --record '.*0.2g.*0.4g.*' --budget", text)

@@ -153,6 +153,13 @@ def _with_own_vertical(
     return both
 
 
+DIMENSIONS = (
+    *("semi_diagonal", "slenderness", "wedge_slenderness", "curvature_ratio"),
+    *("height", "width", "wedge_width", "radius"),
+)
+"""Of columns, by their keys: ratios and a semi-diagonal, or the lengths in their place."""
+
+
 def _values(case: Case) -> Iterator[tuple[str, ...]]:
     """Causes, and changes of values of the case."""
     file = case.file
@@ -185,8 +192,9 @@ def _values(case: Case) -> Iterator[tuple[str, ...]]:
             )
     yield from _of_building_and_devices(case)
     place = "podium.bearing.dimensions" if bearing.dimensions else "podium.bearing"
-    for name in ("semi_diagonal", "slenderness", "height", "width"):
-        value = float(getattr(bearing.dimensions or bearing, name, None) or 0.0)
+    for name in DIMENSIONS:
+        given = getattr(bearing.dimensions or bearing, name, None)
+        value = float(given) if isinstance(given, int | float) else 0.0
         for factor in (0.99, 1.01) if value else ():
             yield "1 % of dimensions", f"{place}.{name}={factor * value:.12g}"
 

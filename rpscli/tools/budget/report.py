@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -35,7 +35,13 @@ REMARK = (
     "one input at a time, without the error of the model itself; the default loss is 0.3"
     " for plane contact, 1 for edges"
 )
+FELT = 1e-3
+"""Of a value: smaller changes are not listed row by row."""
+
 NO_CHANGE = "no change"
+MOST_PANELS = 4
+MOST_BARS = 24
+"""In the picture; the table has all."""
 CAPTION = (
     "orange: factor 2, red: other verdict, dots: records; overturned at the right end"
 )
@@ -84,6 +90,53 @@ class Effect(NamedTuple):
         far = np.maximum(size, abs(own)) >= FACTOR * np.minimum(size, abs(own))
         other_sign = np.sign(self.values) * np.sign(own) < 0.0
         return np.asarray((self.values != own) & ~np.isnan(size) & (far | other_sign))
+
+    def move(self, row: int) -> float:
+        """Size of the change over the value as the case is; infinite where it overturns."""
+        value = self.values[row]
+        own = self.values[0]
+        if np.isnan(value) or value == own:
+            return 0.0
+        return float(abs(value - own) / abs(own)) if own else np.inf
+
+    @property
+    def label(self) -> str:
+        """Of axes, without a unit: ratios have none."""
+        return self.quantity.label if self.quantity else self.name
+
+    @property
+    def own_text(self) -> str:
+        """The value as the case is, and its verdict."""
+        assert self.quantity is not None, "events have no value"
+        if not np.isfinite(self.values[0]):
+            return "overturned"
+        text = shown(large(self.values[0], self.quantity.unit)[0])
+        return f"{text} {_word(self.exceeded[0])}" if self.limit else text
+
+    def text(self, row: int) -> str:
+        """The ratio to the value as the case is, with the verdict where that turns."""
+        word = f" {_word(self.exceeded[row])}" if self.turned[row] else ""
+        return f"{_over(self.values[row], self.values[0])}{word}"
+
+
+def _word(exceeded: object) -> str:
+    return "EXCEEDED" if exceeded else "met"
+
+
+def _over(value: float, own: float) -> str:
+    """A value over that of the case; ``-`` where one of them is none."""
+    if np.isinf(value):
+        return "overturned"
+    return (
+        "-" if np.isnan(value) or not (own and np.isfinite(own)) else f"{value / own:.3g}"
+    )
+
+
+def _headed(effect: Effect) -> str:
+    """Head of a column: the result, its unit and its limit."""
+    assert effect.quantity is not None, "events have no column"
+    bound = "" if effect.limit is None else f", {bound_text(effect.limit)}"
+    return f"{headed(effect.quantity.label, effect.quantity.unit)}{bound}"
 
 
 @dataclass(frozen=True)
@@ -151,45 +204,53 @@ class Budget:
         first = f"{name} is {word}; the verdict turns with: {turned or NO_CHANGE}."
         return f"{first} {told}" if effect.quantity else first
 
+    @cached_property
+    def inputs(self) -> list[int]:
+        """Rows that are no other records, but for the first: what moves most comes first."""
+        rows = [n for n, row in enumerate(self.rows) if n and row.cause != RECORDS]
+        return sorted(rows, key=lambda n: -max(e.move(n) for e in self.effects))
+
     def tables(self) -> Iterator[Table | str]:
-        """Of each result; options, and what gave no number, once at the end."""
+        """One table of what moves something, then sentences of each result."""
+        yield self._table()
+        still = [self.rows[n].label for n in self.inputs if not self._moves(n)]
+        if still:
+            yield f"moved by less than {100.0 * FELT:g} % of all: {'; '.join(still)}"
         for effect in self.effects:
-            if effect.quantity:
-                yield self._table(effect, effect.quantity)
             share = f" Beyond it in {RECORDS}: {effect.beyond}." if effect.limit else ""
             yield self.sentences(effect) + share
-        told = [
-            (row.label, row.refused or row.options)
-            for row in self.every
-            if row.refused or row.cause != RECORDS
-        ]
-        heads = ("", "options of rps timehistory CASE, or why there are none")
-        yield Table.of_texts(heads, told, words=2)
-        yield REMARK
+        if worst := [*self._worst_records()]:
+            yield f"the worst of the {RECORDS}: {'; '.join(worst)}"
+        for row in self.every:
+            if row.refused:
+                yield f"{row.label}: {row.refused}"
+        yield f"options of rps timehistory for each row stand in budget.csv; {REMARK}"
 
-    def _table(self, effect: Effect, quantity: ResultQuantity) -> Table:
-        """The value as it is, after every change, and fractiles over the records."""
-        words = np.where(effect.exceeded, "EXCEEDED", "met" if effect.limit else "")
-        every = zip(self.rows, effect.values, words, strict=True)
-        lines = [(row.label, v, word) for row, v, word in every if row.cause != RECORDS]
-        number = len(self.rows) - len(lines)
-        for share, value in zip(SHARES, effect.spread, strict=True):
-            lines.append(
-                (f"{RECORDS}: {100.0 * share:g} % fractile of {number}", value, "")
-            )
-        cells = []
-        for name, value, word in lines:
-            text = (
-                "overturned" if np.isinf(value) else shown(large(value, quantity.unit)[0])
-            )
-            ratio = value / effect.values[0] if effect.values[0] else np.nan
-            cells.append(
-                [name, text, f"{ratio:.3g}" if np.isfinite(ratio) else "-", word]
-            )
-        bound = "" if effect.limit is None else bound_text(effect.limit)
-        return Table.of_texts(
-            ["", headed(quantity.label, quantity.unit), "ratio", bound], cells
-        )
+    def _moves(self, row: int) -> bool:
+        return any(e.move(row) >= FELT or e.turned[row] for e in self.effects)
+
+    def _table(self) -> Table:
+        """Values as the case is, then over them those of changes and of records."""
+        shown_ones = [effect for effect in self.effects if effect.quantity]
+        heads = [_headed(effect) for effect in shown_ones]
+        cells = [["as it is", *(effect.own_text for effect in shown_ones)]]
+        for row in filter(self._moves, self.inputs):
+            texts = [effect.text(row) for effect in shown_ones]
+            cells.append([self.rows[row].label, *texts])
+        number = len(self.rows) - len(self.inputs) - 1
+        for k, share in enumerate(SHARES if number else ()):
+            texts = [_over(effect.spread[k], effect.values[0]) for effect in shown_ones]
+            cells.append([f"{RECORDS}: {100.0 * share:g} % fractile of {number}", *texts])
+        return Table.of_texts(["", *heads], cells)
+
+    def _worst_records(self) -> Iterator[str]:
+        """The record that is worst for each result, by name."""
+        others = [n for n, row in enumerate(self.rows) if row.cause == RECORDS]
+        for effect in self.effects if others else ():
+            if effect.quantity and np.isfinite(effect.values[others]).any():
+                sign = Condition(effect.name, 0.0, "").sign
+                bad = np.nan_to_num(sign * effect.values[others], nan=-np.inf)
+                yield f"{effect.name} {self.rows[others[int(np.argmax(bad))]].record}"
 
     def document(self) -> dict[str, Any]:
         """All rows, and of each result what turns or moves it."""
@@ -219,51 +280,63 @@ class Budget:
         ]
         heads = ", ".join(("cause, change, options, outcome, refused", *known.values()))
         yield "budget.csv", csv_text(columns_of(heads, cells))
-        draws = {e.name: partial(self.figure, e) for e in self.effects if e.quantity}
-        yield from style.figure_files(draws, look).items()
+        if any(effect.quantity for effect in self.effects):
+            yield from style.figure_files({"budget": self.figure}, look).items()
 
     def section(self, look: Look, record: str) -> Section:
         """Of a page: pictures above the tables, sentences and options."""
+        caption = (
+            f"What moves the results under {record}, over the case as it is; {CAPTION}."
+        )
         blocks: list[Block] = [
-            Picture(files, f"What moves {name} under {record}; {CAPTION}.")
-            for name, files in pictures(self.files(page_look(look))).items()
+            Picture(files, caption)
+            for files in pictures(self.files(page_look(look))).values()
         ]
         return Section("Sensitivity of the results", [*blocks, *self.tables()])
 
-    def figure(self, effect: Effect, figure: style.Figure) -> None:
-        """Bars from the value as it is to each changed one, records as
-        points, limits as lines.
+    def figure(self, figure: style.Figure) -> None:
+        """A tornado: a panel a result, bars from the case as it is, sorted; records as
+        points above, limits as lines.
         """
-        assert effect.quantity is not None, "events have no picture"
-        label = effect.quantity.label
-        unit = effect.quantity.unit
-        others = np.array([row.cause == RECORDS for row in self.rows])
-        values = effect.values[~others]
-        labels = [r.label for r in self.rows if r.cause != RECORDS]
-        names = [style.folded(text, 0.42 * style.room(figure), 7.0) for text in labels]
-        most = max(1 + name.count("\n") for name in names)
-        lines = [(values[0], style.BLACK, "-")]
+        every = [effect for effect in self.effects if effect.quantity]
+        shown_ones = every[: 2 if style.narrow(figure) else MOST_PANELS]
+        more = len(every) - len(shown_ones)
+        note = f"{CAPTION}; {more} more in the table" if more else CAPTION
+        rows = [row for row in self.inputs if self._moves(row)][:MOST_BARS]
+        part = 0.42 if style.narrow(figure) else 0.3
+        names = [
+            style.folded(self.rows[row].label, part * style.room(figure), 7.0)
+            for row in rows
+        ]
+        most = max((1 + name.count("\n") for name in names), default=1)
+        height = 1.3 + (0.07 + 0.12 * most) * (1 + len(names))
+        style.begin(figure, (self.case.title, note), height)
+        panels = figure.subplots(1, len(shown_ones), sharey=True, squeeze=False)[0]
+        width = 0.6 * style.room(figure) / max(len(shown_ones), 1)
+        for axes, effect in zip(panels, shown_ones, strict=True):
+            self._draw(axes, effect, rows)
+            label = f"{effect.label} over the case as it is"
+            axes.set_xlabel(style.folded(label, width, 7.0), fontsize=7)
+        panels[0].set_yticks(
+            range(-1, len(rows)), [RECORDS, *names], fontsize=7, parse_math=False
+        )
+        panels[0].invert_yaxis()
+
+    def _draw(self, axes: style.Axes, effect: Effect, rows: list[int]) -> None:
+        """Ratios of one result to that of the case, cut where they leave the panel."""
+        own = effect.values[0] or 1.0
+        ratio = effect.values / own
+        others = [n for n, row in enumerate(self.rows) if row.cause == RECORDS]
+        finite = ratio[np.isfinite(ratio)]
+        far = 1.1 * float(np.quantile(finite, 0.95)) if finite.size else 2.0
+        bars = np.clip(ratio[rows], -far, far)
+        colours = np.array([style.BLUE, style.ORANGE, style.RED])
+        kinds = np.where(effect.turned, 2, effect.moved)[rows]
+        places = np.arange(len(rows))
+        axes.barh(places, bars - 1.0, left=1.0, height=0.65, color=colours[kinds])
+        points = np.clip(ratio[others], -far, far)
+        axes.plot(points, [-1.0] * len(points), ".", color=style.GREY, alpha=0.6)
+        axes.axvline(1.0, color=style.BLACK, lw=0.8)
         if effect.limit:
-            lines.append((effect.limit.limit, style.RED, "--"))
-        sizes = np.array([*effect.values, *(line[0] for line in lines)])
-        far = 1.15 * np.max(sizes[np.isfinite(sizes)], initial=0.0)
-        factor = large(1.0, unit)[0] or 1.0
-        places = np.arange(len(names))
-        style.begin(
-            figure, (self.case.title, CAPTION), 1.2 + (0.07 + 0.12 * most) * len(names)
-        )
-        axes = figure.subplots()
-        kind = np.array([style.BLUE, style.ORANGE, style.RED])
-        kinds = np.where(effect.turned, 2, effect.moved)[~others]
-        ends, points = (
-            factor * np.clip(v, -far, far) for v in (values, effect.values[others])
-        )
-        axes.barh(places, ends - ends[0], left=ends[0], height=0.65, color=kind[kinds])
-        axes.plot(points, [len(names)] * len(points), ".", color=style.GREY, alpha=0.6)
-        for value, colour, dash in lines:
-            axes.axvline(factor * min(value, far), color=colour, ls=dash)
-        axes.set_yticks(
-            [*places, len(names)], [*names, RECORDS], fontsize=7, parse_math=False
-        )
-        axes.invert_yaxis()
-        axes.set_xlabel(headed(label, unit))
+            bound = min(effect.limit.limit / own, far)
+            axes.axvline(bound, color=style.RED, ls="--", lw=0.9)

@@ -3,6 +3,7 @@
 import json
 import math
 import shlex
+from itertools import pairwise
 
 import pytest
 from commands.conftest import SMALL_CASE, write_case
@@ -69,6 +70,28 @@ def test_each_row_is_the_command_by_hand(workplace, rps, rps_json):
     for name, result in results.items():
         assert result["turned_by"] == turned[name]
         assert result["moved_by"] == moved[name]
+
+
+def test_one_table_sorted_by_what_moves_most(workplace, rps):
+    write_case(
+        "limited.yaml", more="limits: {rotation_ratio: 0.2, base_shear_ratio: 9}\n"
+    )
+    records = [word for pulse in PULSES for word in ("--record", pulse)]
+    text = rps("budget", "limited.yaml", *records, *NONE).stdout
+    lines = text.splitlines()
+    assert len(lines) < 70
+    assert sum("as it is" in line for line in lines) == 1
+    first = next(n for n, line in enumerate(lines) if line.startswith("as it is"))
+    last = next(n for n, line in enumerate(lines) if line.startswith("records: "))
+    sizes = []
+    for line in lines[first + 1 : last]:
+        cells = [cell for cell in line.replace("EXCEEDED", "").split() if cell != "met"]
+        numbers = [c for c in cells[-2:] if c.replace(".", "").replace("-", "").isdigit()]
+        if len(numbers) == 2 and len(line) > 60:
+            over = "overturned" in line
+            sizes.append(9e9 if over else max(abs(float(n) - 1.0) for n in numbers))
+    assert len(sizes) > 3
+    assert all(a >= b - 6e-3 for a, b in pairwise(sizes))
 
 
 def test_the_other_component_and_what_is_not_known(workplace, rps_json):
