@@ -312,7 +312,7 @@ class Budget:
         height = 1.3 + (0.07 + 0.12 * most) * (1 + len(names))
         style.begin(figure, (self.case.title, note), height)
         panels = figure.subplots(1, len(shown_ones), sharey=True, squeeze=False)[0]
-        width = 0.6 * style.room(figure) / max(len(shown_ones), 1)
+        width = 0.8 * (0.9 - part) * style.room(figure) / max(len(shown_ones), 1)
         for axes, effect in zip(panels, shown_ones, strict=True):
             self._draw(axes, effect, rows)
             label = f"{effect.label} over the case as it is"
