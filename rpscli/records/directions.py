@@ -21,15 +21,18 @@ HORIZONTAL = Direction(vertical=False)
 
 _VERTICAL = re.compile(
     r"v|z|u|d|up|ud|du|dn|dwn|down|vrt|vert|vertical|vertic\w*|updown|upward\w*|downward\w*"
-    r"|(?:gm|ch|comp|acc?)\d*z|[a-z]{2}z\d*|hz",
+    r"|(?:gm|ch|comp|acc?|a)\d*z|[hbelsc][nhlgp]z\d*|hz|updn|vtcl|ve"
+    r"|haut|hoch|vertikal|arriba|d[uü][sş]ey|верт\w*|上下|κατακ\w*",
     re.IGNORECASE,
 )
 _COMPASS = {"n": 0.0, "e": 90.0, "s": 180.0, "w": 270.0}
 _AXIS = re.compile(r"ns|sn|ew|we|nsc|ewc", re.IGNORECASE)
 _BEARING = re.compile(r"([ns])(\d{1,2})([ew])", re.IGNORECASE)
 _NAMED = re.compile(
-    r"x|y|l|t|r|h|h1|h2|h|long\w*|trans\w*|radial|tran|[a-z]{2}[nexy12]"
-    r"|(?:gm|ch|comp|acc?)\d*[xy]|north|south|east|west|northsouth|eastwest",
+    r"x|y|l|t|r|h|h1|h2|h|long\w*|trans\w*|radial|tran|(?!ch\d)[hbelsc][nhlgp][nexy12]\d*"
+    r"|(?:gm|ch|comp|acc?|a)\d*[xy]|north|south|east|west|northsouth|eastwest"
+    r"|nord|norte|kuzey|север|ost|este?|do[gğ]u|восток|ouest|oeste|bat[ıi]|запад"
+    r"|sud|süd|sur|g[uü]ney|юг|南北|東西|db|kg",
     re.IGNORECASE,
 )
 _AZIMUTH = re.compile(r"(?:az|azimuth)?(\d{1,3})(?:deg|°|degrees)?", re.IGNORECASE)
@@ -62,3 +65,17 @@ def _of_bearing(begin: str, degrees: str, towards: str) -> float:
     from_north = begin.lower() == "n"
     turned = float(degrees) * (1.0 if towards.lower() == "e" else -1.0)
     return (turned if from_north else 180.0 - turned) % 360.0
+
+
+_QUALIFIED = re.compile(
+    r"(?:ground[\s_]*)?(?:acc\w*?|a)[\s_.-]*([a-z]{1,3}|[ns]\d\d?[ew]|\d{3})",
+    re.IGNORECASE,
+)
+
+
+def direction_in(name: str) -> Direction | None:
+    """The direction that a name is, or that stands behind `acc` in it, as in `acc_ns`."""
+    if (found := direction_of(name)) is not None:
+        return found
+    match = _QUALIFIED.fullmatch(name.strip())
+    return direction_of(match[1]) if match else None

@@ -404,11 +404,23 @@ def _files(of: Source, folder: Path | None, notes: list[str]) -> list[Source]:
     )
 
 
+_BELOW_BY_NAME = re.compile(
+    r"bore-?hole|down-?hole|(?<![A-Za-z])GL-?[1-9]|(?<=[_ ])-\d+m(?![A-Za-z])",
+    re.IGNORECASE,
+)
+"""Words in names of files of instruments below the ground."""
+
+
 def _above_ground(
     of: Source, single: list[Source], folder: Path | None, notes: list[str]
 ) -> list[Source]:
     """Sources without those in boreholes, with a note on these; all if there are no others."""
-    below = [each for each in single if stated(each, folder).in_borehole]
+    below = [
+        each
+        for each in single
+        if _BELOW_BY_NAME.search(PurePath(each.place).stem)
+        or stated(each, folder).in_borehole
+    ]
     if not below or len(below) == len(single):
         return single
     notes.append(f"{of}: in boreholes, left out: {_some([b.place for b in below])}")

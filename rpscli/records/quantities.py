@@ -96,7 +96,16 @@ def last_digit(numeral: str) -> float:
 def canonical_unit(text: str) -> str | None:
     """One of the known names for a unit of acceleration, or None if it is not one."""
     unit = re.sub(r"[\s()\[\]]", "", text.lower())
-    unit = unit.replace("sec", "s").replace("²", "2").replace("**", "^").replace("^", "")
+    unit = unit.replace("sec", "s").replace("⁻²", "-2").replace("²", "2")
+    unit = re.sub(r"[·*.](?=s)", "", unit) if unit.endswith("-2") else unit
+    unit = unit.replace("**", "^").replace("^", "")
     unit = re.sub(r"/s/s$", "/s2", unit)
-    unit = {"gals": "gal", "gravity": "g", "g's": "g"}.get(unit, unit)
+    unit = {
+        "gals": "gal",
+        "gravity": "g",
+        "g's": "g",
+        "ms-2": "m/s2",
+        "cms-2": "cm/s2",
+        "mm/s/s": "mm/s2",
+    }.get(unit, unit)
     return unit if unit in ACCELERATIONS else None

@@ -225,7 +225,7 @@ def events_among(
     ])  # fmt: skip
 
 
-def _family(of: Source, place: str, apart: set[str]) -> str:
+def _family(of: Source, place: str, apart: set[str]) -> str:  # noqa: PLR0911 -- a kind each
     """The name of a recording: a place of a source without what
     tells its components apart.
     """
@@ -241,6 +241,9 @@ def _family(of: Source, place: str, apart: set[str]) -> str:
         return azimuth[1]
     if number := _PEER_NUMBER.fullmatch(name):
         return str(folder / number[1].upper())
+    word = _LAST_WORD.fullmatch(PurePath(name).stem)
+    if word and word[2] and _WAY.fullmatch(word[2]):
+        return str(folder / word[1])
     return str(folder / _COMPONENT.sub("", name))
 
 
@@ -276,6 +279,13 @@ _LAST_WORD = re.compile(
     r"(.*?[-_. ])([A-Za-z]{1,12}\d{0,3}[A-Za-z]?|\d{3})|(.*\d)([A-Za-z])"
 )
 """The last word of a name, or its last letter behind a digit, and what stands before."""
+
+
+_WAY = re.compile(
+    r"NS|EW|SN|WE|N|E|X|Y|H1|H2|HN[NE12]|HG[NE12]|[NS]\d\d?[EW]|north|east|long|tran",
+    re.IGNORECASE,
+)
+"""Last words of names that tell the two horizontal components of a recording apart."""
 
 
 def _upright_by_word(sources: Iterable[Source], folder: Path | None) -> set[str]:
@@ -335,7 +345,14 @@ def vertical_of(of: Source, folder: Path | None) -> Source:
             for each in found
             if of.place.startswith(_VERTICAL.sub(r"\1", each.place))
         ]
-        found = alike or named
+        word = _LAST_WORD.fullmatch(PurePath(of.place).stem)
+        beginning = (word[1] or word[3]) if word else ""
+        same = [
+            each
+            for each in found
+            if beginning and PurePath(each.place).stem.startswith(beginning)
+        ]
+        found = alike or named or same
     if len(found) != 1:
         names = ", ".join(each.place for each in found[:3])
         some = f", and {len(found)} are there: {names}" * bool(found)

@@ -35,6 +35,7 @@ _ZONES = {
 _ISO = re.compile(r"\b(\d{4})[-/.\s]\s?(\d{1,2})[-/.\s]\s?(\d{1,2})(?!\d)")
 _SOLID = re.compile(r"\b((?:19|20)\d\d)(\d\d)(\d\d)(?=\D|$)")
 _AMERICAN = re.compile(r"\b(\d{1,2})/(\d{1,2})/(\d{4}|\d{2})\b")
+_DOTTED = re.compile(r"\b(\d{1,2})\.(\d{1,2})\.(\d{4})\b")
 _NAMED = re.compile(r"\b([a-z]{3})[a-z]*\.?\s+(\d{1,2}),?\s+(\d{4})\b", re.IGNORECASE)
 _EUROPEAN = re.compile(r"\b(\d{1,2})\s+([a-z]{3})[a-z]*\.?,?\s+(\d{4})\b", re.IGNORECASE)
 _GREEN = re.compile(r"\b(\d{4})\s+([a-z]{3})[a-z]*\s+(\d{1,2})\b", re.IGNORECASE)
@@ -70,7 +71,7 @@ def seconds_of(text: str) -> float | None:
 def _date(text: str) -> tuple[tuple[int, int, int], str] | None:
     """Year, month and day, and the text without them."""
     for pattern, order in (
-        (_ISO, "ymd"), (_AMERICAN, "mdy"), (_NAMED, "mdy"), (_EUROPEAN, "dmy"),
+        (_ISO, "ymd"), (_AMERICAN, "mdy"), (_DOTTED, "dmy"), (_NAMED, "mdy"), (_EUROPEAN, "dmy"),
         (_GREEN, "ymd"), (_SOLID, "ymd"),
     ):  # fmt: skip
         if match := pattern.search(text):
@@ -78,11 +79,14 @@ def _date(text: str) -> tuple[tuple[int, int, int], str] | None:
             month = _MONTHS.get(parts["m"].lower()) or (
                 int(parts["m"]) if parts["m"].isdigit() else 0
             )
+            day = int(parts["d"])
+            if pattern is _AMERICAN and month > 12 >= day:  # as they write in Europe
+                month, day = day, month
             year = int(parts["y"])
             if len(parts["y"]) == 2:
                 year += 2000 if year < 30 else 1900
             rest = f"{text[: match.start()]} {text[match.end() :]}"
-            return (year, month, int(parts["d"])), rest
+            return (year, month, day), rest
     return None
 
 

@@ -11,7 +11,7 @@ from rpscli.records.directions import direction_of
 from rpscli.records.formats.at2 import at2_text
 from rpscli.records.ground_motion import GroundMotion, Recording
 from rpscli.records.loading import expanded, load_components, load_record
-from rpscli.records.recordings import clusters
+from rpscli.records.recordings import clusters, earthquake
 from rpscli.records.when import seconds_of
 from rpscli.report.motions import two_column_text
 
@@ -240,3 +240,66 @@ def test_all_values_in_one_line_and_two_records_in_one_file(tmp_path):
     assert motion.npts == len(VALUES)
     both = series("dt: 0.005", "units: g") + "\n" + series().lstrip("\n")
     assert any("blank line" in text for text in read(tmp_path, both).warnings)
+
+
+@pytest.mark.parametrize(
+    ("title", "station", "way", "event"),
+    [
+        ("Kocaeli, Turkey, 8/17/1999, Duzce, UP", "Duzce", "UP", "kocaeli 1999"),
+        ("Imperial Valley, 10/15/1979, El Centro Array 6, 230", "El Centro Array 6", "230",
+         "imperial valley 1979"),
+        ("NORTHRIDGE 01/17/94 1231, PACOIMA DAM, UP (CDMG)", "PACOIMA DAM", "UP",
+         "northridge 1994"),
+    ],
+)  # fmt: skip
+def test_titles_of_the_peer_collections(title, station, way, event, tmp_path):
+    rows = "\n".join(f"{x:15.7E}" for x in VALUES)
+    head = f"PEER\n{title}\nACCELERATION IN UNITS OF G\nNPTS= 200, DT= .005 SEC\n"
+    motion = read(tmp_path, head + rows + "\n", name="x.at2")
+    assert (motion.recording.station, motion.recording.direction) == (station, way)
+    assert earthquake(motion.recording.event) == event
+    back = read(tmp_path, at2_text(motion), name="y.at2").recording
+    assert (back.station, back.direction) == (station, way)
+
+
+@pytest.mark.parametrize(
+    "line", ["sensor depth: 100 m", "Location: downhole", "GL -20 m"]
+)
+def test_instruments_below_the_ground_are_left_out(line, tmp_path):
+    for name, head in (("s_NS", ()), ("s_EW", ()), ("b_NS", (line,)), ("b_EW", (line,))):
+        (tmp_path / f"{name}.txt").write_text(series(*head, "dt: 0.005", "units: g"))
+    found, notes = expanded([f"{tmp_path}"])
+    assert [path[-8:] for path in found] == ["s_EW.txt", "s_NS.txt"]
+    assert "in boreholes, left out" in notes[0]
+
+
+def test_the_depth_of_an_earthquake_is_not_that_of_an_instrument(tmp_path):
+    text = series(
+        "Hypocentral depth: 9 km", "event depth = 12000 m", "dt: 0.005", "units: g"
+    )
+    assert not read(tmp_path, text).recording.in_borehole
+
+
+@pytest.mark.parametrize("separator", [";", "\t"])
+def test_decimal_commas_where_commas_do_not_separate(separator, tmp_path):
+    text = table("Zeit [s],Beschleunigung [m/s²]", TIMES, VALUES)
+    text = text.replace(",", separator).replace(".", ",")
+    motion = read(tmp_path, text)
+    assert motion.pga == pytest.approx(np.abs(VALUES).max(), rel=1e-5)
+
+
+def test_two_components_by_words_of_their_names_are_one_recording(tmp_path):
+    for name in ("stA_NS", "stA_EW", "stB-N", "stB-E", "c_nord", "d_est"):
+        (tmp_path / f"{name}.txt").write_text(series("dt: 0.005", "units: g"))
+    sources = [
+        f"{tmp_path / name}.txt" for name in ("stA_NS", "stA_EW", "stB-N", "stB-E")
+    ]
+    assert clusters(sources) == (0, 0, 1, 1)
+
+
+def test_transverse_beside_longitudinal_is_no_period(tmp_path):
+    heads = "dt: 0.005\nunits: g\nL,T,V"
+    (tmp_path / "x.txt").write_text(table(heads, VALUES, 2 * VALUES, 3 * VALUES))
+    found, notes = expanded([f"{tmp_path / 'x.txt'}"])
+    assert [text[-1] for text in found] == ["1", "2"]
+    assert "channel 3" in notes[0]

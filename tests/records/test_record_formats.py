@@ -315,7 +315,6 @@ def test_a_row_too_few_or_too_many_is_refused(tmp_path, name, times):
             "units: g\n0,00 0,1\n0,02 0,2\n",
             ":2: '0,00 0,1' is not a row of numbers .decimal commas: write points",
         ),
-        ("units: g\n0.00; 0.1\n0.02; 0.2\n", "semicolons: separate by commas or blanks"),
         (AT2.replace(".1 .2 -.1 0", "1E300 1 2 3"), "which is not a ground acceleration"),
         (AT2.replace(".1 .2 -.1 0", "0,1 0,2 -0,1 0"), "decimal commas: write points"),
         # Contents that are not acceleration, or not known.

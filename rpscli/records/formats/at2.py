@@ -203,11 +203,17 @@ _TITLE_WIDTH = 240
 
 def _recording_line(of: Recording) -> list[str]:
     """The line `event, date, station, direction` of a recording; none if all is unknown."""
-    event, _, date = of.event.partition(",")
+    event, _, date = of.event.rpartition(",")
+    if not event:
+        event, date = date, ""
     fields = (event, of.origin or date, of.station, of.direction)
     if not (of.station or of.direction or of.origin):
         return []
-    return [", ".join(remark(field.replace(",", " ")).strip() or "-" for field in fields)]
+    return [
+        ", ".join(
+            remark(re.sub(r"\s*,\s*", " ", field)).strip() or "-" for field in fields
+        )
+    ]
 
 
 def at2_text(motion: GroundMotion) -> str:

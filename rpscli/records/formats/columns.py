@@ -18,7 +18,8 @@ from typing import NamedTuple, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.records.directions import direction_of
+from rpscli.errors import RecordError
+from rpscli.records.directions import direction_in
 from rpscli.records.formats.record_text import (
     Array,
     Channel,
@@ -36,6 +37,7 @@ from rpscli.records.formats.titles import (
     TIME,
     UNKNOWN,
     Title,
+    beside_each_other,
     title_of,
 )
 from rpscli.records.ground_motion import GroundMotion
@@ -139,6 +141,10 @@ def contents_of_columns(text: RecordText) -> list[Channel]:
     width = int(table.widths[0])
     recording = recording_of(line.value for line in table.header)
     titles = [] if np.any(table.widths != width) else _titles(text, table, width)
+    try:
+        _refuse_other_quantities(text, table, titles)
+    except RecordError as error:
+        return [Channel(refusal=f"{error}".partition(": ")[2])]
     held = [(i, title) for i, title in enumerate(titles) if title.kind == ACCELERATION]
     if len(held) < 2:
         return [Channel(recording=recording)]
@@ -149,8 +155,15 @@ def contents_of_columns(text: RecordText) -> list[Channel]:
 
 
 def _plain(line: str) -> str:
-    """A line without the quotes of its cells."""
-    return line.replace('"', " ") if '"' in line else line
+    """A line of numbers without quotes, between blanks where ; or tabs part them.
+
+    Commas are decimal ones then.
+    """
+    if '"' in line:
+        line = line.replace('"', " ")
+    if (";" in line or "\t" in line) and not re.search("[A-Za-z]{2}", line):
+        return re.sub(r"(?<=\d),(?=\d)", ".", line).replace(";", " ").replace("\t", " ")
+    return line
 
 
 def _is_comment(line: str) -> bool:
@@ -173,7 +186,7 @@ def _titles(text: RecordText, table: _Table, width: int) -> list[Title]:
             if not units and width > 1 and all(map(ANY_UNIT.fullmatch, bare)):
                 units = bare  # a row of their own below the names
                 break
-            titles = [title_of(cell, line.line) for cell in cells]
+            titles = beside_each_other([title_of(cell, line.line) for cell in cells])
             if units:
                 titles = [
                     t._replace(unit=t.unit or u)
@@ -368,7 +381,9 @@ def _columns(text: RecordText, table: _Table, titles: list[Title]) -> GroundMoti
     series = series or [i for i, title in enumerate(titles) if title.kind != TIME]
     place = series[0] if titles else 1
     if titles and (text.channel is not None or len(series) != 1):
-        named = [Channel(i + 1, titles[i].line, titles[i].name) for i in series]
+        unknown = [i for i, each in enumerate(titles) if each.kind == UNKNOWN]
+        open_to = sorted({*series, *(unknown if text.channel else ())})
+        named = [Channel(i + 1, titles[i].line, titles[i].name) for i in open_to]
         place = text.chosen(named).number - 1
     times = next(
         (i for i, title in enumerate(titles) if title.kind == TIME and i != place), None
@@ -378,11 +393,16 @@ def _columns(text: RecordText, table: _Table, titles: list[Title]) -> GroundMoti
     title = titles[place] if titles else None
     stated = _stated(text, table, title)
     late: list[str] = []
-    if times is not None:
+    if times is not None and not _are_counts(text, values[:, times]):
         stated, late = _timed(text, table, stated, values[:, times], times, titles)
     words = table.words + (f", column {title.name}" if title and width > 2 else "")
     form = "two-column text" if width == 2 else "columns of text"
     return text.motion(stated, values[:, place], form, words, *late)
+
+
+def _are_counts(text: RecordText, times: Array) -> bool:
+    """True of numbers of samples in the place of times, where the user gives the step."""
+    return text.dt not in (None, 1.0) and bool(np.all(np.diff(times) == 1.0))
 
 
 def _timed(
@@ -460,7 +480,7 @@ def _stated(text: RecordText, table: _Table, title: Title | None) -> Stated:
     if title and title.unit and (canonical_unit(title.unit) or not title.remarks):
         units.append(Statement(f"the title {title.name}", title.unit, title.line))
     recording = recording_of(line for _, line in lines)
-    if title and direction_of(title.name) is not None:
+    if title and direction_in(title.name) is not None:
         recording = recording._replace(direction=title.name)
     return Stated(
         text.unit(units), text.agreed(steps, text.step), peak=peak, recording=recording
@@ -494,7 +514,8 @@ def _refuse_other_series(text: RecordText, table: _Table) -> None:
     for line in table.header:
         for cell in re.split(r"[,;\t]|\s{2,}", line.value):
             title = title_of(_plain(cell), line.line)
-            if title.kind in ("velocity", "displacement") and title.name:
+            is_title = title.name and not re.search(r"[\d:=]", cell)
+            if is_title and title.kind in ("velocity", "displacement"):
                 raise text.fault(
                     f"the header says {line.value[:60]!r}: this is a {title.kind} record;"
                     " give the acceleration record of the same station",

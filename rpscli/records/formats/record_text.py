@@ -39,7 +39,7 @@ _BEHIND_A_UNIT = re.compile(
 """What may stand behind a unit: the end, a bracket without numbers, another key."""
 _MULTIPLE = re.compile(
     r"(?<![?&])\b(?:scale|scaling|multipl\w*|conversion|calibration|gain|factor)\b"
-    rf"[^=:?&]{{0,24}}[=:]\s*({NUMBER_PATTERN})",
+    rf"[^=:?&\d]{{0,24}}(?:[=:]|\s)\s*({NUMBER_PATTERN})(?![\d:/-])",
     re.IGNORECASE,
 )
 """A factor on the values."""
@@ -270,7 +270,12 @@ class RecordText:
         """Statements of the step; where the user gives it, only those that are clear."""
         if self.dt is None:
             return [*said]
-        return [each for each in said if unit_behind(each.value) in _TIME_UNITS]
+        return [
+            each
+            for each in said
+            if unit_behind(whole_number(each.value)) in _TIME_UNITS
+            and re.fullmatch(NUMBER_PATTERN, whole_number(each.value).partition(" ")[0])
+        ]
 
     def refuse_multiples(self, lines: Sequence[tuple[int, str]], key: str) -> None:
         """Refuse a factor on the values, unless the user says what a value is."""
@@ -322,13 +327,15 @@ class RecordText:
 
     def unit(self, statements: Sequence[Statement]) -> str | None:
         """The one unit of acceleration that several statements name."""
+        if self.multiple is not None:  # the user says what a value is
+            statements = [each for each in statements if canonical_unit(each.value)]
 
         def meaning(each: Statement) -> str:
             if (unit := canonical_unit(each.value)) is None:
                 raise self.fault(
                     f"{each.name} says {each.value.strip()[:_SHOWN]!r}, which is not a"
-                    f" unit of acceleration that is known ({KNOWN_UNITS}); correct it,"
-                    " or give the acceleration file",
+                    f" unit of acceleration that is known ({KNOWN_UNITS}); give the"
+                    " acceleration file, or say what a value is: ?units=1 g",
                     each.line,
                 )
             return unit

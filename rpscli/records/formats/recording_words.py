@@ -28,27 +28,70 @@ def recording_of(lines: Iterable[str]) -> Recording:
     time, STATION, direction (agency)`.
     """
     said: dict[str, str] = {}
+    below = False
     for line in lines:
+        below |= is_below_ground(line)
         for name, pattern in _KEYS.items():
             match = re.search(pattern, line, re.IGNORECASE)
             if match and match[1] and name not in said:
                 said[name] = match[1][:80]
+        if "direction" not in said and (way := _direction_without_key(line)):
+            said["direction"] = way
         if not said and (titled := titled_recording(line)) is not None:
             return titled
+    if below:
+        said["station"] = f"{said.get('station', '')} borehole".strip()
     return Recording(**said)  # type: ignore[arg-type]
+
+
+_DIP = re.compile(r"\bdip\b\s*[:=]\s*[+-]?90\b", re.IGNORECASE)
+_WORD = re.compile(
+    r"^\W*(?:dir\.|channel|component|comp\.?|direction|angle|inc\w*)\s+(\S{1,12})\s*$",
+    re.IGNORECASE,
+)
+_BELOW = re.compile(
+    r"bore-?hole|down-?hole|below\s+(?:the\s+)?ground|\bwithin\b.*rock|rock.*\bwithin\b"
+    r"|\b(?:sensor|instrument|installation)?[\s_]*depth\b\s*[:=(m)\s]*-?0*[1-9][\d.]*\s*m\b"
+    r"|\b(?:GL|elevation|level|position)\s*[:=]?\s*-\s*[1-9][\d.]*\s*m?\b"
+    r"|\bpozo\b|\bforage\b|bohrloch|sondaj|скважин",
+    re.IGNORECASE,
+)
+_OF_THE_EARTHQUAKE = re.compile(r"hypo|focal|event|source|epi", re.IGNORECASE)
+
+
+def is_below_ground(line: str) -> bool:
+    """True of a line that puts the instrument below the ground."""
+    return bool(_BELOW.search(line)) and not _OF_THE_EARTHQUAKE.search(line)
+
+
+def _direction_without_key(line: str) -> str:
+    """The direction in lines such as `Dir. V`, `CHANNEL HNZ` and `dip: -90`."""
+    if _DIP.search(line):
+        return "UP"
+    match = _WORD.match(line)
+    return match[1] if match and direction_of(match[1]) is not None else ""
+
+
+_DATE = re.compile(
+    r"\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}|\b\d{1,2} \w{3,9} \d{4}\b|\b(?:19|20)\d\d\b|^-$"
+)
 
 
 def titled_recording(line: str) -> Recording | None:
     """The recording of a title; None if a line is none."""
     parts = [part.strip() for part in line.split(",")]
-    if len(parts) == 4:
-        event, date, station, direction = parts
-        origin = date if re.search(r"\d:\d\d", date) else ""
+    dated = [k for k, part in enumerate(parts[1:-2], 1) if _DATE.search(part)]
+    if dated:
+        at = dated[-1]
+        date = parts[at]
         return Recording(
-            f"{event}, {date}", station=station, direction=direction, origin=origin
+            f"{', '.join(parts[:at])}, {date}",
+            station=", ".join(parts[at + 1 : -1]),
+            direction=parts[-1],
+            origin=date if re.search(r"\d:\d\d", date) else "",
         )
     direction = re.sub(r"\s*\(.*\)$", "", parts[-1])
-    dated = re.search(r"\d/\d+/\d|\b(?:19|20)\d\d\b", parts[0])
-    if len(parts) == 3 and dated and direction_of(direction) is not None:
+    of_event = re.search(r"\d/\d+/\d|\b(?:19|20)\d\d\b", parts[0])
+    if len(parts) == 3 and of_event and direction_of(direction) is not None:
         return Recording(parts[0], station=parts[1], direction=direction)
     return None

@@ -64,6 +64,10 @@ REMARK = re.compile(r"\w*(?:corr|filt|proc|ground|raw)\w*", re.IGNORECASE)
 """Words in brackets behind a name that are no unit."""
 
 
+ACROSS = "trans"
+"""In place of a unit: T beside L and V is the transverse direction, not a period."""
+
+
 class Title(NamedTuple):
     """The title of a column: its name, its unit, empty without one, and its line."""
 
@@ -83,7 +87,7 @@ class Title(NamedTuple):
         if accelerates:
             return self._other_by_name or ACCELERATION
         if self.name == "T" or timed:  # a period, or what changes over time
-            return UNKNOWN
+            return ACCELERATION if self.unit == ACROSS else UNKNOWN
         if _ACCELERATION.fullmatch(self.name):
             return ACCELERATION  # a unit that is none of acceleration is refused by name
         if direction_of(self.name) is not None and (not self.unit or self.remarks):
@@ -124,6 +128,17 @@ def title_of(cell: str, line: int) -> Title:
     if not _GROUND.fullmatch(text) and (match := _BEHIND.fullmatch(text)):
         return Title(match[1].strip(" _"), _unit(match[2]), line)
     return Title(text, "", line)
+
+
+def beside_each_other(titles: list[Title]) -> list[Title]:
+    """Titles of one line: T is transverse where L or V stands beside it, and no time."""
+    names = {title.name for title in titles}
+    if not {"L", "V"} & names or any(title.kind == TIME for title in titles):
+        return titles
+    return [
+        title._replace(unit=title.unit or ACROSS) if title.name == "T" else title
+        for title in titles
+    ]
 
 
 def _unit(text: str) -> str:
