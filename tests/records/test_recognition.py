@@ -100,6 +100,7 @@ def test_a_factor_beside_a_unit_is_asked_for(units, tmp_path):
     "step",
     [
         "dt: 5 (ms)", "dt: 5 x 10^-3 s", "DT= 5.0 MILLISEC", "dt: 1/200", "dt [ms]: 5",
+        "sampling rate: 200 Hz", "SampleRate(Hz): 200", "fs = 200", "DELTA T = 5.0E-03",
         "time step = 5 msec", "sampling interval: 5·10^-3", "dt: 1/200 s",
     ],
 )  # fmt: skip

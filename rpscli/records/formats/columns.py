@@ -51,8 +51,12 @@ from rpscli.records.quantities import (
 )
 
 _STEP = (
-    r"(?<![?&])\b(?:dt|(?:time|sampling)[\s_]*(?:step|interval|period)"
+    r"(?<![?&])\b(?:dt|delta[\s_]*t?|Δt|(?:time|sampling)[\s_]*(?:step|interval|period)"
     rf"|equally spaced (?:at|intervals of)){STEP_PATTERN}"
+)
+_RATE = (
+    r"(?<![?&])\b(?:sampl\w*[\s_]*(?:rate|freq\w*)|fs|sps)\b\s*(?:[(\[]\s*(?:hz|sps)\s*[)\]])?"
+    rf"\s*[=:]\s*({NUMBER_PATTERN})\s*(?:hz|sps|1/s|samples?\s*/\s*s\w*)?(?![A-Za-z])"
 )
 _COUNT = r"\b(?:npts|ndata|number of (?:data|points|samples|values))\b\s*[=:]\s*([0-9]+)"
 _UNITS_KEY = (
@@ -476,6 +480,10 @@ def _stated(text: RecordText, table: _Table, title: Title | None) -> Stated:
     units = statements("units", _UNITS_KEY, lines)
     text.refuse_multiples(lines, _UNITS_KEY)
     steps = text.understood_steps(statements("dt", _STEP, lines))
+    steps += [
+        each._replace(value=f"{1.0 / text.number(each, positive=True):.15g}")
+        for each in statements("the sampling rate", _RATE, lines)
+    ]
     peak = next(iter(statements("peak", _PEAK, lines)), None)
     if title and title.unit and (canonical_unit(title.unit) or not title.remarks):
         units.append(Statement(f"the title {title.name}", title.unit, title.line))
