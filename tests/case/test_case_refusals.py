@@ -152,6 +152,10 @@ OF_A_BUILDING = [
     ("source: motion.at2", "source: a, scale: 2, scale_to: {measure: PGA, value: 1}", "18:31"),
     # limits in their three forms
     ("0.5}\n", "{at_most: 0.5, share: 0.1, fractile: 0.5}}\n", "20:26", "a share or a fractile"),
+    ("0.5}\n", "{at_most: 0.5, of: mean, share: 0.1}}\n", "20:26: limits.rotation_ratio",
+     "must have a share or a fractile or `of: mean`, only one of them; remove the rest"),
+    ("0.5}\n", "{at_most: 0.5, of: median}}\n", "20:45: limits.rotation_ratio.of = 'median'",
+     "must be mean"),
     ("0.5}\n", "{at_most: 0.5, share: 1}}\n", "20:48", "share = 1 must be >= 0 and < 1; 10 % is"),
     ("0.5}\n", "{share: 0.1}}\n", "20:10: limits.rotation_ratio.at_most is missing"),
     ("0.5}\n", "-1}\n", "20:26: limits.rotation_ratio = -1 must be > 0"),
