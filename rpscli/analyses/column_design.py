@@ -55,7 +55,6 @@ class ColumnDemand:
     pressure_ratio: float | None  # Largest p_0/f on arcs; None where it is not known
     crushed_ratio: float | None
     """Largest b_c over the width of an end; 0 where no column came onto an edge."""
-    shear: float  # largest |F| [N]
     mean_force: float  # N of all columns over their number, at the largest moment [N]
     moments: tuple[tuple[float, float], ...]
     """Then, in x and in y: that of the podium [N m], and the lever of the rows [m], which
@@ -208,10 +207,7 @@ def column_demand(
     i = int(np.argmax(size.max(axis=0)))
     shares = tuple((float(moment[i]), lever) for moment, lever in moments)
     mean = float(getattr(trace, f"normal_{found[0].end}")[i]) / structure.columns
-    shear = float(np.abs(of.F).max())
-    return ColumnDemand(
-        tuple(found), ends.column_state(i), ratio, crushed, shear, mean, shares
-    )
+    return ColumnDemand(tuple(found), ends.column_state(i), ratio, crushed, mean, shares)
 
 
 def _along_tilt(trace: Trace, down: NDArray[np.bool_]) -> Array:

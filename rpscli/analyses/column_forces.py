@@ -50,6 +50,9 @@ class AxialForces:
     moments: list[tuple[Array, float]]
     """In x and in y: that of the podium at each time [N m], and
     mean(x^2)/max(x) of rows [m]."""
+    shear: float | None
+    """Largest of a column at either end, also of those that carry more or less than the
+    mean (16.3) [N]; None without rows, where only the mean of all columns is known."""
 
 
 def no_bound(name: str, structure: PodiumStructure) -> str:
@@ -107,7 +110,29 @@ def axial_forces(structure: PodiumStructure, trace: Trace) -> AxialForces:
         sliding_time(structure, trace),
         heaviest,
         moments,
+        _largest_shear(structure, trace, uneven) if moments else None,
     )
+
+
+def _largest_shear(structure: PodiumStructure, trace: Trace, uneven: Array) -> float:
+    """Largest shear of columns that carry so much more, and less, than the mean times
+    their number, passes that floors cannot follow left out (16.3) [N].
+    """
+    x = np.abs(trace.rotation)
+    tilted = (trace.phase != state.FULL_CONTACT) & (trace.phase != state.BEDDED)
+    slope = 2.0 * structure.bearing.semi_diagonal * structure.weight_arm(x)
+    slope = np.where(tilted, slope / structure.lever_arm(x), 0.0)
+    counted = ~in_shocks(structure, trace)
+    largest = 0.0
+    for end in ("top", "bottom"):
+        for more in (uneven, -uneven):
+            parts = [
+                getattr(of, f"shear_{end}") - more * slope * towards
+                for of, towards in _directions(trace)
+            ]
+            sizes = np.sqrt(sum(part**2 for part in parts))
+            largest = max(largest, float(np.max(sizes[counted], initial=0.0)))
+    return largest / structure.columns
 
 
 def sliding_time(structure: PodiumStructure, trace: Trace) -> float:

@@ -290,13 +290,21 @@ class TimeHistoryResult(Demand):
 
     @property
     def max_column_shear(self) -> float:
-        """Largest horizontal force of a column [N]: of the most
-        loaded, with `podium.column`.
+        """Largest horizontal force of a column [N]: of the one with
+        the most where rows are known, else the mean of all columns (`shear_is_of`).
         """
         shears = [forces.shear for forces in self.column_forces.values()]
-        return max(
-            *shears, 0.0 if self.column_demand is None else self.column_demand.shear
-        )
+        single = None if self.axial is None else self.axial.shear
+        return max(*shears, single or 0.0)
+
+    @property
+    def shear_is_of(self) -> str:
+        """Which column has `max_column_shear`, in words."""
+        st = self.structure
+        if self.axial is not None and self.axial.shear is not None:
+            times = ", times their number" if st.columns == 1 else ""
+            return f"most loaded column{times}"
+        return "all columns together" if st.columns == 1 else "mean of the columns"
 
     @property
     def max_column_force(self) -> float:

@@ -279,6 +279,37 @@ def test_outer_rows_balance_the_moment_of_the_building():
 
 
 @pytest.mark.evidence("forces in columns, friction", "exact")
+@pytest.mark.parametrize("storeys", [0, 3])
+def test_an_outer_column_leans_on_the_beam_with_what_it_carries_more(storeys):
+    """Flat ends bear on two edges: D_N more runs along the line between them, at an angle of
+    alpha - theta to the vertical, and gives D_N tan(alpha - theta) more shear. The other outer
+    columns carry, and resist, as much less.
+    """
+    of = with_plan(storeys, (0.0, 9.0), None) if storeys else structure(0)
+    of = replace(of, bearing=structure(0, rho=0.0).bearing, rows=(0.0, 9.0), columns=4)
+    result = time_history(of, motion(), SHORT)
+    t = denser_trace(result, 5e-4)
+    more = known(result.axial).heaviest["top"] - t.normal_top / 4.0
+    assert more.max() > 0.01 * t.normal_top.max()
+    tilted = t.phase != 0
+    slope = np.where(tilted, np.tan(of.bearing.alpha - np.abs(t.rotation)), 0.0)
+    extra = np.sign(t.rotation) * more * slope
+    of_columns = [
+        np.abs(F / 4.0 + side * extra)
+        for F in (t.shear_top, t.shear_bottom)
+        for side in (-1.0, 1.0)
+    ]
+    assert result.max_column_shear == pytest.approx(np.max(of_columns), rel=1e-3)
+    assert known(result.axial).shear == pytest.approx(np.max(of_columns), rel=1e-9)
+    mean = time_history(replace(of, rows=()), motion(), SHORT)
+    assert result.max_column_shear > 1.001 * mean.max_column_shear
+    assert (mean.shear_is_of, result.shear_is_of) == (
+        "mean of the columns",
+        "most loaded column",
+    )
+
+
+@pytest.mark.evidence("forces in columns, friction", "exact")
 @pytest.mark.parametrize("azimuth", [0.0, math.pi / 2, math.pi / 4, 0.3])
 def test_corner_columns_carry_what_a_grid_needs_for_the_moments_of_a_plane_motion(
     azimuth,

@@ -202,6 +202,8 @@ def test_a_least_force_judges_the_set_from_below(rps, rps_json):
         "podium.plan={length: 8}",
         "--set",
         "superstructure.vertical_period=0.1",
+        "--set",
+        "podium.columns=2",
     )
     words = (
         "timehistory",
