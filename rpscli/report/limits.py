@@ -9,8 +9,12 @@ from collections.abc import Sequence
 from rpscli.case.conditions import EVENTS, FOR_A_MEAN, LIMITS, RATE, Condition
 from rpscli.report.table import Table, large, measured
 from rpscli.sweep.statistics.verdicts import Verdict
-from rpscli.units import Written
+from rpscli.units import Written, digits_beside
 
+ALL_DIGITS = 10
+"""Of a limit, which is printed as it was written."""
+RATE_DIGITS = 6
+"""Of a rate, which may come from a probability."""
 VERDICT = ("limit", "", "requirement", "result")  # heads of `verdict_texts`
 
 
@@ -25,7 +29,9 @@ def _bound(condition: Condition) -> str:
     if isinstance(limit, Written) and limit.unit:
         return limit.text
     number, unit = large(limit, limit_unit(condition.name))
-    return f"{number:g} {unit}".strip()
+    short = f"{number:g}"
+    same = math.isclose(float(short), number or 0.0, rel_tol=10.0**-ALL_DIGITS)
+    return f"{short if same else f'{number:.{ALL_DIGITS}g}'} {unit}".strip()
 
 
 def reached_text(condition: Condition, value: float, overturned: int = 0) -> str:
@@ -49,7 +55,7 @@ def bound_text(condition: Condition) -> str:
 def requirement_text(condition: Condition) -> str:
     """A condition in words."""
     if condition.name == RATE:
-        return f"at most {condition.limit:.3g} a year"
+        return f"at most {condition.limit:.{RATE_DIGITS}g} a year"
     if condition.fractile is not None:
         return f"{bound_text(condition)} at the {100.0 * condition.fractile:g} % fractile"
     if condition.of == "mean":
@@ -67,7 +73,8 @@ def verdict_text(verdict: Verdict) -> str:
     """What a verdict rests on, in words."""
     if verdict.interval:
         low, high = verdict.interval
-        return f"{verdict.value:.3g} a year ({low:.2g} to {high:.2g})"
+        digits = digits_beside(verdict.value, verdict.condition.limit, 3)
+        return f"{verdict.value:.{digits}g} a year ({low:.2g} to {high:.2g})"
     if verdict.fractile is not None:
         demand = reached_text(verdict.condition, verdict.fractile, verdict.overturned)
         return f"{demand} there, n = {verdict.beyond.of}{_shown_by(verdict)}"

@@ -5,7 +5,8 @@ import pytest
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.conditions import Condition, conditions_of, parse_condition
 from rpscli.errors import UsageError
-from rpscli.report.limits import requirement_text
+from rpscli.report.limits import bound_text, reached_text, requirement_text
+from rpscli.units import Written
 
 from .conftest import BUILDING, case_of
 
@@ -73,6 +74,28 @@ def test_the_mean_is_judged_of_seven_recordings_and_more():
     mean = condition("drift_ratio", 0.005, of="mean")
     assert mean.under(7) == mean
     assert mean.under(6) == mean.under(1) == condition("drift_ratio", 0.005)
+
+
+@pytest.mark.parametrize(
+    ("value", "limit", "text"),
+    [
+        (0.50004, 0.5, "0.50004"),
+        (0.5, 0.5, "0.5000"),
+        (0.499996, 0.5, "0.499996"),
+        (0.5 * (1.0 + 1e-15), 0.5, "0.5000"),  # rounding
+        (0.51, 0.5, "0.5100"),
+        (0.3000049, Written(0.3, "300 mm"), "300.005 mm"),
+        (0.3, Written(0.3, "300 mm"), "300.0 mm"),
+    ],
+)
+def test_a_value_is_told_from_its_limit(value, limit, text):
+    name = "max_lift" if isinstance(limit, Written) else "rotation_ratio"
+    assert reached_text(condition(name, limit), value) == text
+
+
+def test_limits_are_printed_as_they_were_written():
+    (found,) = limited("{rotation_ratio: 0.50000012}")
+    assert bound_text(found) == "at most 0.50000012"
 
 
 def test_conditions_of_options():

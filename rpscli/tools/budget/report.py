@@ -22,7 +22,7 @@ from rpscli.report.figures.look import Look
 from rpscli.report.files import Files
 from rpscli.report.limits import bound_text
 from rpscli.report.page import Block, Picture, Section, page_look, pictures
-from rpscli.report.table import Table, columns_of, csv_text, headed, large, shown
+from rpscli.report.table import Table, columns_of, csv_text, headed, large, shown_beside
 from rpscli.sweep.statistics.fractiles import HIGH, LOW, Share, fractiles, share_of
 from rpscli.sweep.statistics.summary import Records
 from rpscli.sweep.statistics.verdicts import exceeds, worse
@@ -179,9 +179,9 @@ class Budget:
             )
         cells = []
         for name, value, word in lines:
-            text = (
-                "overturned" if np.isinf(value) else shown(large(value, quantity.unit)[0])
-            )
+            limit = large(effect.limit.limit if effect.limit else None, quantity.unit)[0]
+            reached = large(value, quantity.unit)[0]
+            text = "overturned" if np.isinf(value) else shown_beside(reached, limit)
             ratio = value / effect.values[0] if effect.values[0] else np.nan
             cells.append(
                 [name, text, f"{ratio:.3g}" if np.isfinite(ratio) else "-", word]
