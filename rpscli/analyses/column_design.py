@@ -179,7 +179,7 @@ def column_demand(
     design: ColumnDesign,
     trace: Trace,
     heaviest: dict[str, Array],
-    moments: list[tuple[Array, float]],
+    moments: list[tuple[Array, Array]],
 ) -> ColumnDemand:
     """Worst instants, from axial forces of the most loaded column
     at the times of a trace.
@@ -205,7 +205,7 @@ def column_demand(
         crushed = (found[-1].crushed_depth or 0.0) / (2.0 * b.end_half_width)
 
     i = int(np.argmax(size.max(axis=0)))
-    shares = tuple((float(moment[i]), lever) for moment, lever in moments)
+    shares = tuple((float(moment[i]), float(lever[i])) for moment, lever in moments)
     mean = float(getattr(trace, f"normal_{found[0].end}")[i]) / structure.columns
     return ColumnDemand(tuple(found), ends.column_state(i), ratio, crushed, mean, shares)
 
