@@ -462,6 +462,10 @@ def column_table(result: TimeHistoryResult) -> Iterator[Part]:
         yield f"p_0 at the largest {listed(of, 'and')}: {doubt}"
     if corner := no_line(result.structure, both=result.both_components):
         yield f"no pressure: {corner}"
+        yield (
+            "moments of tilted columns are about a corner, sqrt(2) times those of the"
+            " inscribed circle; the section resists them about its diagonal"
+        )
 
 
 ENERGIES = (
