@@ -559,6 +559,31 @@ def test_what_a_system_does_not_have_is_empty_and_not_judged(mixed, workplace, o
     ]
 
 
+def test_a_mean_of_columns_is_no_force_of_one(mixed):
+    """Beside a system with rows of columns one without them is neither judged nor shown."""
+    change = {
+        "vary": [{"podium.plan": [None, {"length": 9.0}]}, {"podium.columns": [4]}],
+        "whole_histories": True,
+        "limits": {"max_column_shear": 1.0},
+        "reports": [],
+    }
+    study = load_study(mixed | change)
+    result = study.run()
+    assert np.isfinite(result["max_column_shear"]).all()
+    judged_ones = [
+        str(value)
+        for value, limit in zip(
+            result.verdicts["podium.plan"], result.verdicts["limit"], strict=True
+        )
+        if limit == "max_column_shear"
+    ]
+    assert judged_ones
+    assert all("9" in value for value in judged_ones)
+    largest = result.statistics["max_column_shear_largest"]
+    assert np.isnan(largest).tolist() == [True, True, False, False]
+    assert any("max_column_shear needs" in note for note in result.notes)
+
+
 def test_what_no_system_has_is_refused(mixed):
     mixed = {**mixed, "vary": [{"superstructure.storeys": [0]}]}
     for change, told in (

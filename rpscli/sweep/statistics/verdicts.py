@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.column_forces import OF_COLUMNS
 from rpscli.case.conditions import EVENTS, NOT_SHOWN, RATE, Condition
 from rpscli.case.text.document import Fault
 from rpscli.records.measures import SHOWN, Of
@@ -345,8 +346,18 @@ def _limits_known(
     return [
         each
         for each in (*own[0].limits, *further)
-        if each.name not in lacking or np.isfinite(table.columns[each.name][points]).any()
+        if each.name not in lacking or _is_known(table, points, each.name)
     ]
+
+
+def _is_known(table: Table, points: Indices, name: str) -> bool:
+    """Whether points have a result all the same; the mean of columns
+    is not that of one, beside systems that have this.
+    """
+    others = table.layout.properties
+    if name in OF_COLUMNS and any(name not in each.lacking for each in others):
+        return False
+    return bool(np.isfinite(table.columns[name][points]).any())
 
 
 def _on_rate(
