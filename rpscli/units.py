@@ -82,6 +82,23 @@ class Written(float):
         return made
 
 
+MOST_DIGITS = 12
+"""Significant digits up to which two numbers are told apart; beyond is rounding."""
+
+
+def digits_beside(value: float, limit: float, digits: int) -> int:
+    """Significant digits of a value beside its limit: so many, or more where both would
+    print alike and are not the same.
+
+    >>> [digits_beside(value, 0.5, 4) for value in (0.5, 0.49, 0.50004, 0.499996)]
+    [4, 4, 5, 6]
+    """
+    for more in range(digits, MOST_DIGITS + 1):
+        if f"{value:.{more - 1}e}" != f"{limit:.{more - 1}e}":
+            return more
+    return digits
+
+
 class Unit(NamedTuple):
     """A factor to SI, mantissa times a power of ten, and powers
     of length, mass and time.

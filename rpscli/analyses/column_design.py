@@ -7,6 +7,7 @@ impulse of beam and columns, which has no bound between rigid ends.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -55,11 +56,19 @@ class ColumnDemand:
     pressure_ratio: float | None  # Largest p_0/f on arcs; None where it is not known
     crushed_ratio: float | None
     """Largest b_c over the width of an end; 0 where no column came onto an edge."""
-    shear: float  # largest |F| [N]
+    corner: float  # of that moment over that of the inscribed circle; 1 but for squares
     mean_force: float  # N of all columns over their number, at the largest moment [N]
     moments: tuple[tuple[float, float], ...]
     """Then, in x and in y: that of the podium [N m], and the lever of the rows [m], which
     give the column more than the mean; empty without rows."""
+
+
+def corner_of(structure: PodiumStructure, *, both: bool) -> float:
+    """How much farther from its axis a column bears on a corner than
+    on its inscribed circle: sqrt(2) of square ones that tilt to any side.
+    """
+    square = structure.column is not None and structure.column.section == "square"
+    return math.sqrt(2.0) if both and square else 1.0
 
 
 def no_line(structure: PodiumStructure, *, both: bool) -> str:
@@ -83,6 +92,7 @@ class _Loads(NamedTuple):
     F: Array
     N: Array
     M: Array
+    corner: Array  # (samples,)
 
 
 def _loads(
@@ -103,8 +113,9 @@ def _loads(
     added = N[0] - trace.normal_bottom / structure.columns
     # In full contact, where only the sum of both moments is known: one eccentricity, as
     # at uplift.
+    corner = corner_of(structure, both=trace.y is not None)
     upright = np.minimum(
-        b.half_height * np.abs(F[0] + F[1]) / np.maximum(N[0] + N[1], 1e-9), B
+        b.half_height * np.abs(F[0] + F[1]) / np.maximum(N[0] + N[1], 1e-9), corner * B
     )
     F = F - np.where(down, 0.0, side * added * arm / height)  # (16.3)
     rigid = (
@@ -114,7 +125,9 @@ def _loads(
     rise = np.where(down, 0.0, r * (1.0 - np.cos(y)))
     P = N * np.cos(x) + side * F * np.sin(x)
     Q = side * F * np.cos(x) - N * np.sin(x)
-    return _Loads(down, side, lever, rise, F, N, lever * P - rise * Q)
+    of_corner = np.where(down, 1.0, corner)
+    M = of_corner * (lever * P - rise * Q)
+    return _Loads(down, side, lever, rise, F, N, M, of_corner)
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,7 +193,7 @@ def column_demand(
     design: ColumnDesign,
     trace: Trace,
     heaviest: dict[str, Array],
-    moments: list[tuple[Array, float]],
+    moments: list[tuple[Array, Array]],
 ) -> ColumnDemand:
     """Worst instants, from axial forces of the most loaded column
     at the times of a trace.
@@ -206,11 +219,11 @@ def column_demand(
         crushed = (found[-1].crushed_depth or 0.0) / (2.0 * b.end_half_width)
 
     i = int(np.argmax(size.max(axis=0)))
-    shares = tuple((float(moment[i]), lever) for moment, lever in moments)
+    corner = float(of.corner[i])
+    shares = tuple((float(moment[i]), float(lever[i])) for moment, lever in moments)
     mean = float(getattr(trace, f"normal_{found[0].end}")[i]) / structure.columns
-    shear = float(np.abs(of.F).max())
     return ColumnDemand(
-        tuple(found), ends.column_state(i), ratio, crushed, shear, mean, shares
+        tuple(found), ends.column_state(i), ratio, crushed, corner, mean, shares
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -47,9 +48,12 @@ class AxialForces:
     """Time during which columns would slide with a friction of `AMPLE` tan(alpha) [s]."""
     heaviest: dict[str, Array]
     """Of the most loaded column at each time of the trace, at both ends [N]."""
-    moments: list[tuple[Array, float]]
-    """In x and in y: that of the podium at each time [N m], and
-    mean(x^2)/max(x) of rows [m]."""
+    moments: list[tuple[Array, Array]]
+    """In x and in y at each time: that of the podium [N m], and mean(x^2)/abs(x) of the
+    outer row on the side to which it acts [m]."""
+    shear: float | None
+    """Largest of a column at either end, also of those that carry more or less than the
+    mean (16.3) [N]; None without rows, where only the mean of all columns is known."""
 
 
 def no_bound(name: str, structure: PodiumStructure) -> str:
@@ -78,36 +82,72 @@ def axial_forces(structure: PodiumStructure, trace: Trace) -> AxialForces:
     beside the vertical period.
     """
     normal = {"top": trace.normal_top, "bottom": trace.normal_bottom}
-    uneven = np.zeros_like(trace.time)
+    more = np.zeros_like(trace.time)
+    less = more.copy()
     ratio = None
     lift_off = None
-    inertia = uneven.copy()
+    inertia = more.copy()
     moments = []
     directions = _directions(trace)
     if all((rows := (structure.rows, structure.rows_y))[: len(directions)]):
         for places, (of, towards) in zip(rows, directions, strict=False):
-            from_middle = np.array(places) - np.mean(places)
-            lever = float(np.mean(from_middle**2) / np.max(np.abs(from_middle)))
-            moment = overturning_moment(structure, of)
-            inertia += np.abs(moment) / lever
-            moments.append((moment + thrust_moment(structure, trace, of, towards), lever))
-            uneven += np.abs(moments[-1][0]) / lever
+            inertial = overturning_moment(structure, of)
+            moment = inertial + thrust_moment(structure, trace, of, towards)
+            left, right = _levers(places)
+            inertia += np.abs(inertial) / min(left, right)
+            moments.append((moment, np.where(moment < 0.0, left, right)))
+            more += np.maximum(moment / right, -moment / left)
+            less += np.minimum(moment / right, -moment / left)
         stands = trace.normal_top > 0.0
         least = np.maximum(trace.normal_top, 1.0)
         ratio = float(np.max(np.where(stands, inertia / least, np.inf)))
-        lifts = np.flatnonzero(uneven > trace.normal_top)
+        lifts = np.flatnonzero(-less > trace.normal_top)
         lift_off = float(trace.time[lifts[0]]) if len(lifts) else None
     N = structure.columns
-    heaviest = {end: (force + uneven) / N for end, force in normal.items()}
+    heaviest = {end: (force + more) / N for end, force in normal.items()}
     return AxialForces(
         {end: float(np.max(force)) for end, force in heaviest.items()},
-        {end: float(np.min(force - uneven)) / N for end, force in normal.items()},
+        {end: float(np.min(force + less)) / N for end, force in normal.items()},
         ratio,
         lift_off,
         sliding_time(structure, trace),
         heaviest,
         moments,
+        _largest_shear(structure, trace, (more, less)) if moments else None,
     )
+
+
+def _levers(places: Sequence[float]) -> tuple[float, float]:
+    """mean(x^2)/abs(x) of the outer rows to the left and to the right of the middle [m].
+
+    >>> [round(lever, 3) for lever in _levers((0.0, 2.0, 9.0))]  # at -3.667 and 5.333 m
+    [4.061, 2.792]
+    """
+    x = np.array(places) - np.mean(places)
+    return tuple((np.mean(x**2) / np.abs((np.min(x), np.max(x)))).tolist())
+
+
+def _largest_shear(
+    structure: PodiumStructure, trace: Trace, uneven: tuple[Array, Array]
+) -> float:
+    """Largest shear of columns that carry so much more, or less, than the mean times
+    their number, passes that floors cannot follow left out (16.3) [N].
+    """
+    x = np.abs(trace.rotation)
+    tilted = (trace.phase != state.FULL_CONTACT) & (trace.phase != state.BEDDED)
+    slope = 2.0 * structure.bearing.semi_diagonal * structure.weight_arm(x)
+    slope = np.where(tilted, slope / structure.lever_arm(x), 0.0)
+    counted = ~in_shocks(structure, trace)
+    largest = 0.0
+    for end in ("top", "bottom"):
+        for more in uneven:
+            parts = [
+                getattr(of, f"shear_{end}") - more * slope * towards
+                for of, towards in _directions(trace)
+            ]
+            sizes = np.sqrt(sum(part**2 for part in parts))
+            largest = max(largest, float(np.max(sizes[counted], initial=0.0)))
+    return largest / structure.columns
 
 
 def sliding_time(structure: PodiumStructure, trace: Trace) -> float:

@@ -80,8 +80,13 @@ NEEDS = {
     "contact": "a compliant podium.contact: kind plane or edges",
     "plane contact": "podium.contact of the kind plane under flat ends",
     "columns": (
-        "podium.plan and superstructure.vertical_period in the case, without which it"
-        " leaves out the overturning moment and the shock of impacts"
+        "podium.columns, podium.plan and superstructure.vertical_period in the case,"
+        " without which it is of all columns, and leaves out the overturning moment and"
+        " the shock of impacts"
+    ),
+    "rows of columns": (
+        "podium.columns and podium.plan in the case, without which it is the mean of the"
+        " columns or their sum, and not that of the most loaded one"
     ),
     "designed columns": _DESIGNED,
     "columns on arcs": f"curved ends, {_DESIGNED}",
@@ -196,7 +201,11 @@ SAMPLED = (
     _Q("floor_acceleration_over_fixed", "-", "floor acceleration over fixed base", limit="1",
         demand=True, needs="superstructure",
         meaning="largest floor acceleration over that of the fixed base"),
-    _Q("max_column_shear", "N", "shear of a column", limit="2e5"),
+    _Q("max_column_shear", "N", "shear of a column", limit="2e5", needs="rows of columns",
+        meaning=(
+            "largest of the most loaded column with podium.plan and podium.columns, else"
+            " the mean of all columns, which cannot be a limit"
+        )),
     _Q("max_column_force", "N", "axial force of a column", limit="2e6", needs="columns"),
     _Q("min_column_force", "N", "minimum axial force of a column", limit="1e4", from_below=True,
         needs="columns"),

@@ -30,6 +30,7 @@ from rpscli.model.column import LARGEST_EDGE
 from rpscli.physics import state
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.shown import data_frame, frozen
+from rpscli.units import digits_beside
 
 NEAR_CRITICAL = 0.8
 """Rotations above this part of the critical one are near it: a
@@ -50,6 +51,11 @@ STEEL_ROTATION = 0.05
 
 RESTING = (state.FULL_CONTACT, state.STUCK, state.BEDDED)
 """Phases in which the podium is down, or held."""
+
+
+def _beside(value: float, limit: float | None) -> str:
+    """A value beside what it is beyond, to be told from it."""
+    return f"{value:.{digits_beside(value, limit or 0.0, 3)}g}"
 
 
 @dataclass(frozen=True)
@@ -290,13 +296,21 @@ class TimeHistoryResult(Demand):
 
     @property
     def max_column_shear(self) -> float:
-        """Largest horizontal force of a column [N]: of the most
-        loaded, with `podium.column`.
+        """Largest horizontal force of a column [N]: of the one with
+        the most where rows are known, else the mean of all columns (`shear_is_of`).
         """
         shears = [forces.shear for forces in self.column_forces.values()]
-        return max(
-            *shears, 0.0 if self.column_demand is None else self.column_demand.shear
-        )
+        single = None if self.axial is None else self.axial.shear
+        return max(*shears, single or 0.0)
+
+    @property
+    def shear_is_of(self) -> str:
+        """Which column has `max_column_shear`, in words."""
+        st = self.structure
+        if self.axial is not None and self.axial.shear is not None:
+            times = ", times their number" if st.columns == 1 else ""
+            return f"most loaded column{times}"
+        return "all columns together" if st.columns == 1 else "mean of the columns"
 
     @property
     def max_column_force(self) -> float:
@@ -447,8 +461,9 @@ class TimeHistoryResult(Demand):
             and self.structure.contact.kind == "plane"
         ):
             yield (
-                f"the strongest re-contact has chi = {chi:.3g}, records with more than"
-                f" {LARGEST_TRIED:g} were not tested; vary `podium.impact.loss`"
+                f"the strongest re-contact has chi = {_beside(chi, LARGEST_TRIED)},"
+                f" records with more than {LARGEST_TRIED:g} were not tested; vary"
+                " `podium.impact.loss`"
             )
         if pressure is not None and pressure > CRUSHING:
             yield (
@@ -469,7 +484,8 @@ class TimeHistoryResult(Demand):
             )
         if design and design.modulus > STEEL and self.max_rotation > STEEL_ROTATION:
             yield (
-                f"the largest rotation of {self.max_rotation:.3g} rad is beyond"
+                f"the largest rotation of {_beside(self.max_rotation, STEEL_ROTATION)}"
+                " rad is beyond"
                 f" {STEEL_ROTATION:g} rad, up to which EN 1337-4 gives the strength of"
                 " steel on steel"
             )
@@ -488,9 +504,9 @@ class TimeHistoryResult(Demand):
             )
         elif self.is_near_critical:
             yield (
-                f"the largest rotation is {ratio:.3g} of the critical one, above"
-                f" {NEAR_CRITICAL:g}: a little more may overturn the structure; judge by"
-                " many records"
+                f"the largest rotation is {_beside(ratio, NEAR_CRITICAL)} of the"
+                f" critical one, above {NEAR_CRITICAL:g}: a little more may overturn"
+                " the structure; judge by many records"
             )
         if self.slides:
             when = (
@@ -499,7 +515,8 @@ class TimeHistoryResult(Demand):
                 else f" from t = {self.sliding_time:.4g} s"
             )
             yield (
-                f"the columns slide{when}: the friction demand {self.friction_demand:.3g}"
-                f" exceeds podium.friction = {self.structure.friction:g}; the model"
+                f"the columns slide{when}: the friction demand"
+                f" {_beside(self.friction_demand, self.structure.friction)} exceeds"
+                f" podium.friction = {self.structure.friction:g}; the model"
                 " assumes that they do not, so the motion is unreliable from then on"
             )

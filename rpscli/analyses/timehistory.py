@@ -88,7 +88,10 @@ def _with_columns(result: TimeHistoryResult) -> TimeHistoryResult:
     """The result with forces of single columns, and the demand on a designed one."""
     structure = result.structure
     design = structure.column
-    even = structure.superstructure is None or len(result.left_out_of_columns) > 1
+    both = result.both_components
+    rows = structure.rows and (structure.rows_y or not both)
+    shaken = structure.superstructure is not None and len(result.left_out_of_columns) < 2
+    even = not (rows or shaken)
     if even and design is None:
         return result
     dense = denser_trace(result, AXIAL_STEP)

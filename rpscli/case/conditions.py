@@ -6,8 +6,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Literal
 
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.text.document import Document
@@ -31,6 +31,9 @@ RATE = "annual_rate"
 NOT_SHOWN = "not-shown"
 """Word of `--fail-on`: limits which are met and not shown to be kept count too."""
 
+FOR_A_MEAN = 7
+"""Recordings from which on a mean of maxima is judged, by EN 1998-1; of fewer the largest."""
+
 LIMITS = {quantity.name: quantity for quantity in LIMITED}
 """Results that conditions may limit, in SI units."""
 
@@ -40,7 +43,7 @@ class Condition:
     """A limit on an event or a result [SI], and who asks for it; 0 for an event.
 
     Of the records of a study a `share` may exceed it, or fall below where small values
-    are bad; or the `fractile` of the results must keep it.
+    are bad; or the `fractile` of the results must keep it; or their mean, `of` them.
     """
 
     name: str
@@ -48,6 +51,7 @@ class Condition:
     source: str
     share: float = 0.0
     fractile: float | None = None
+    of: Literal["mean"] | None = None
 
     @property
     def from_below(self) -> bool:
@@ -61,10 +65,15 @@ class Condition:
 
     @property
     def admissible(self) -> float:
-        """Share of the records that may be beyond the limit."""
+        """Share of the records that may be beyond the limit; of a mean, may overturn."""
         if self.fractile is None:
             return self.share
         return self.fractile if self.from_below else 1.0 - self.fractile
+
+    def under(self, recordings: int) -> Condition:
+        """What is judged under so many recordings: of few the largest, not the mean."""
+        few = self.of == "mean" and recordings < FOR_A_MEAN
+        return replace(self, of=None) if few else self
 
 
 def parse_condition(text: str) -> Condition:
@@ -109,7 +118,8 @@ def conditions_of(limits: LimitsSection, source: str) -> tuple[Condition, ...]:
             share = given.get("share", 0.0)
             fractile = given.get("fractile")
             limit = given["at_least" if LIMITS[name].from_below else "at_most"]
-            conditions.append(Condition(name, limit, source, share, fractile))
+            of = given.get("of")
+            conditions.append(Condition(name, limit, source, share, fractile, of))
         else:
             conditions.append(Condition(name, given, source))
     return tuple(conditions)

@@ -239,9 +239,11 @@ def doubts_of_directions(structure: PodiumStructure, *, both: bool) -> Iterator[
     if structure.column is not None and structure.column.section == "square":
         yield Doubt(
             "podium.column.section: square columns are modelled as round under both"
-            " components; real ones resist up to 1.4 times as much towards their corners"
-            " and wobble over them with impacts, and the pressure at a corner is not"
-            " computed"
+            " components, on their inscribed circle; towards corners real ones bring up"
+            " to 1.4 times the shear into the building, which base shears, accelerations"
+            " and shears of columns here do not hold (column_moment does, as about a"
+            " corner), and they wobble over corners with impacts; the pressure at a"
+            " corner is not computed"
         )
     lossless = structure.impact_law.contact_time == 0.0 and not structure.passes_smoothly
     if lossless and structure.restitution < 1.0:

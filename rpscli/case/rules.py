@@ -33,6 +33,11 @@ COLUMNS = "podium.columns"
 COLUMN_LIMITS = tuple(
     q.name for q in LIMITED if q.needs in {"designed columns", "columns on arcs"}
 )
+NUMBER = (
+    " needs podium.columns, which is missing: forces are those of all columns together;"
+    " give their number, or remove the limit"
+)
+"""Of limits on the force of one column, where how many there are is not known."""
 RATIOS = {
     "semi_diagonal": "R = sqrt(H^2 + B^2), as in '1.5 m'",
     "slenderness": "tan(alpha) = B/H, as in 0.15",
@@ -371,6 +376,7 @@ class Rules:
             )
             of_building = (q.name for q in LIMITED if "superstructure" in q.needs)
             yield from self._limited(text, *of_building)
+            yield from self._limits_of_columns()
             return
         if building.storey_height is None:
             text = f" needs {HEIGHT}, which is missing"
@@ -390,28 +396,32 @@ class Rules:
         of impacts change.
         """
         building = self.file.superstructure
-        plan = self.file.podium.plan
-        needed = {
-            "the overturning moment": ("podium.plan", plan),
-            "the shock of impacts": (
-                "superstructure.vertical_period",
-                building.vertical_period,
-            ),
-        }
-        if lacking := {
-            what: key for what, (key, value) in needed.items() if value is None
-        }:
+        podium = self.file.podium
+        names = "max_column_force", "min_column_force", *COLUMN_LIMITS
+        storeys = building.storeys != 0
+        number = [COLUMNS] * (podium.columns is None)
+        lacking = {}
+        if podium.plan is None and (storeys or (podium.columns or 1) > 1):
+            lacking["the overturning moment"] = "podium.plan"
+            text = (
+                ": the shear of a column is known as the mean of the columns only, and"
+                " the most loaded one has more; give"
+                f" {listed(['podium.plan', *number], 'and')}, or remove the limit"
+            )
+            yield from self._limited(text, "max_column_shear")
+        elif number and (storeys or podium.plan is not None):
+            yield from self._limited(NUMBER, "max_column_shear")
+        if building.vertical_period is None and storeys:
+            lacking["the shock of impacts"] = "superstructure.vertical_period"
+        if lacking:
             text = (
                 f": the force of a column is known without {listed(lacking, 'and')} only,"
-                " and may"
+                " and may be several times as large with it; give"
+                f" {listed([*lacking.values(), *number], 'and')}"
             )
-            text += (
-                " be several times as large with it; give"
-                f" {listed(lacking.values(), 'and')}"
-            )
-            yield from self._limited(
-                text, "max_column_force", "min_column_force", *COLUMN_LIMITS
-            )
+            yield from self._limited(text, *names)
+        elif number and (storeys or podium.plan is not None):
+            yield from self._limited(NUMBER, *names[:2])
 
     def _columns(self) -> Iterator[Fault]:
         """Rows have heights for the moment of the building; the

@@ -185,7 +185,13 @@ def limited(result: TimeHistoryResult) -> dict[str, float]:
 def _refuse_unknown(limit: Condition, result: TimeHistoryResult) -> None:
     """Refuse a limit on what a history does not know: raises UsageError."""
     needs = LIMITS[limit.name].needs if limit.name in LIMITS else ""
-    incomplete = limit.name in OF_COLUMNS and result.left_out_of_columns
+    structure = result.structure
+    incomplete = limit.name in OF_COLUMNS and (
+        not structure.counts_columns
+        or structure.left_out_of_columns(
+            both=result.both_components, axial=limit.name != "max_column_shear"
+        )
+    )
     if needs and (getattr(result, limit.name) is None or incomplete):
         raise UsageError(f"{limit.source}: {limit.name} needs {NEEDS[needs]}")
 

@@ -246,6 +246,11 @@ class PodiumStructure(Shown):
             else {"": self}
         )
 
+    @property
+    def counts_columns(self) -> bool:
+        """False where rows of several are known, and not how many columns they have."""
+        return not self.rows or self.columns > 1
+
     def left_out_of_columns(self, *, both: bool, axial: bool = True) -> tuple[str, ...]:
         """Parts that forces of single columns leave out, and the
         keys that would give them.
@@ -260,15 +265,13 @@ class PodiumStructure(Shown):
         building = self.superstructure
         parts = []
         passes = both and not self.passes_smoothly
-        if not (axial or passes):
-            return ()
-        if (
-            axial
-            and building is not None
-            and not (self.rows and (self.rows_y or not both))
-        ):
+        several = building is not None or self.columns > 1
+        if several and not (self.rows and (self.rows_y or not both)):
             key = "podium.plan, with y" if both else "podium.plan"
-            parts.append(f"the overturning moment of the building ({key})")
+            what = "leaning columns" if building is None else "the building"
+            parts.append(f"the overturning moment of {what} ({key})")
+        if not (axial or passes):
+            return tuple(parts)
         shocks = (
             f"passes shorter than {1e3 * self.shock_time:g} ms" if passes else "impacts"
         )

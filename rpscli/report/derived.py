@@ -340,7 +340,7 @@ def column_derivations(result: TimeHistoryResult) -> Iterator[Derivation]:
         letters = _letters(structure) | _ends(structure, x, N) | {"x": x, "N_1": N}
         if each.largest == "column_moment":
             letters |= _moment_letters(demand, each) | {"columns": structure.columns}
-            steps = _moment_steps(each, letters)
+            steps = _moment_steps(each, letters, demand.corner)
         else:
             steps = _end_steps(structure, each, letters["crushed"])
         for label, symbol, value, unit, formula in steps:
@@ -359,14 +359,23 @@ def _moment_letters(demand: ColumnDemand, at: ColumnInstant) -> dict[str, float]
     P = N * math.cos(x) + F * math.sin(x)
     Q = F * math.cos(x) - N * math.sin(x)
     letters = {"s": side, "F_1": at.shear, "d": rise, "P": P, "Q": Q}
-    letters |= {"e": (at.moment + rise * Q) / P, "N_mean": demand.mean_force}
+    letters |= {
+        "e": (at.moment / demand.corner + rise * Q) / P,
+        "N_mean": demand.mean_force,
+    }
     for way, (moment, lever) in zip("xy", demand.moments, strict=False):
         letters |= {f"M_{way}": abs(moment), f"l_{way}": lever}
     return letters
 
 
-def _moment_steps(at: ColumnInstant, letters: Mapping[str, float]) -> list[_Step]:
-    """Forces at an end when its moment is largest, and the moment that they give."""
+def _moment_steps(
+    at: ColumnInstant, letters: Mapping[str, float], corner: float
+) -> list[_Step]:
+    """Forces at an end when its moment is largest, and the moment
+    that they give, about a `corner` of square columns.
+    """
+    moment = "e * P - d * Q"
+    moment = f"sqrt(2) * ({moment})" if corner > 1.0 else moment
     ways = [way for way in "xy" if f"M_{way}" in letters]
     carried = "N_mean" + "".join(f" + M_{way} / (columns * l_{way})" for way in ways)
     axial = "N_1 * cos(x) + s * F_1 * sin(x)"
@@ -375,7 +384,7 @@ def _moment_steps(at: ColumnInstant, letters: Mapping[str, float]) -> list[_Step
         _Step("axial force, by moments of the podium", "N", at.axial_force, "N", carried),
         _Step("axial force at its end", "P", letters["P"], "N", axial),
         _Step("shear at its end", "Q", letters["Q"], "N", shear),
-        _Step("largest moment", "M", at.moment, "N m", "e * P - d * Q"),
+        _Step("largest moment", "M", at.moment, "N m", moment),
     ]
 
 

@@ -6,11 +6,15 @@ import math
 from collections import Counter
 from collections.abc import Sequence
 
-from rpscli.case.conditions import EVENTS, LIMITS, RATE, Condition
+from rpscli.case.conditions import EVENTS, FOR_A_MEAN, LIMITS, RATE, Condition
 from rpscli.report.table import Table, large, measured
 from rpscli.sweep.statistics.verdicts import Verdict
-from rpscli.units import Written
+from rpscli.units import Written, digits_beside
 
+ALL_DIGITS = 10
+"""Of a limit, which is printed as it was written."""
+RATE_DIGITS = 6
+"""Of a rate, which may come from a probability."""
 VERDICT = ("limit", "", "requirement", "result")  # heads of `verdict_texts`
 
 
@@ -25,7 +29,9 @@ def _bound(condition: Condition) -> str:
     if isinstance(limit, Written) and limit.unit:
         return limit.text
     number, unit = large(limit, limit_unit(condition.name))
-    return f"{number:g} {unit}".strip()
+    short = f"{number:g}"
+    same = math.isclose(float(short), number or 0.0, rel_tol=10.0**-ALL_DIGITS)
+    return f"{short if same else f'{number:.{ALL_DIGITS}g}'} {unit}".strip()
 
 
 def reached_text(condition: Condition, value: float, overturned: int = 0) -> str:
@@ -49,9 +55,11 @@ def bound_text(condition: Condition) -> str:
 def requirement_text(condition: Condition) -> str:
     """A condition in words."""
     if condition.name == RATE:
-        return f"at most {condition.limit:.3g} a year"
+        return f"at most {condition.limit:.{RATE_DIGITS}g} a year"
     if condition.fractile is not None:
         return f"{bound_text(condition)} at the {100.0 * condition.fractile:g} % fractile"
+    if condition.of == "mean":
+        return f"{bound_text(condition)} in the mean"
     percent = f"{100.0 * condition.share:g} %"
     if condition.name in EVENTS:
         return f"at most {percent} of the records" if condition.share else "no record"
@@ -65,12 +73,28 @@ def verdict_text(verdict: Verdict) -> str:
     """What a verdict rests on, in words."""
     if verdict.interval:
         low, high = verdict.interval
-        return f"{verdict.value:.3g} a year ({low:.2g} to {high:.2g})"
+        digits = digits_beside(verdict.value, verdict.condition.limit, 3)
+        return f"{verdict.value:.{digits}g} a year ({low:.2g} to {high:.2g})"
     if verdict.fractile is not None:
         demand = reached_text(verdict.condition, verdict.fractile, verdict.overturned)
         return f"{demand} there, n = {verdict.beyond.of}{_shown_by(verdict)}"
     fallen = f", {verdict.overturned} overturned" if verdict.overturned else ""
+    if verdict.judged_by:
+        return f"{_mean_text(verdict)}{fallen}"
     return f"{verdict.beyond}{fallen}{_shown_by(verdict)}"
+
+
+def _mean_text(verdict: Verdict) -> str:
+    """The mean of the records, or the worst of them where these are few."""
+    condition = verdict.condition
+    value = verdict.value
+    why = ""
+    if verdict.judged_by == "mean" and verdict.mean is not None:
+        value = verdict.mean
+    else:
+        why = f", judged in place of the mean: fewer than {FOR_A_MEAN} recordings (EN 1998-1)"
+    reached = reached_text(condition, value, verdict.overturned)
+    return f"{verdict.judged_by} {reached} of {verdict.beyond.of}{verdict.beyond.behind}{why}"
 
 
 def _shown_by(verdict: Verdict) -> str:
@@ -82,12 +106,13 @@ def _shown_by(verdict: Verdict) -> str:
 
 def worst_text(verdict: Verdict) -> str:
     """Number of several records beyond a limit, and the worst of them."""
+    mean = f"{_mean_text(verdict)}; " if verdict.judged_by else ""
     which = "least" if verdict.condition.from_below else "largest"
     value = reached_text(verdict.condition, verdict.value, verdict.overturned)
     worst = f", {which} {value} ({verdict.record})"
     worst = "" if verdict.condition.name in EVENTS else worst
     return (
-        f"{verdict.beyond.number} of {verdict.beyond.of}"
+        f"{mean}{verdict.beyond.number} of {verdict.beyond.of}"
         f" beyond{worst}{_shown_by(verdict)}"
     )
 
@@ -149,7 +174,8 @@ def limits_table(verdicts: Sequence[Verdict]) -> Table:
             value = math.inf if verdict.overturned else verdict.value
             numbers = (
                 reached_text(condition, value, verdict.overturned),
-                bound_text(condition),
+                bound_text(condition)
+                + ", one record in place of the mean" * (condition.of == "mean"),
             )
         rows.append((condition.name, verdict.word, condition.source, *numbers))
     return Table.of_texts(["limit", "", "from", "value", "requirement"], rows, words=3)

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
-from rpscli.units import Written, si_factor
+from rpscli.units import Written, digits_beside, si_factor
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -47,6 +47,13 @@ def shown(value: float | str | None, digits: int = 4) -> str:
     return f"{value:.{max(0, digits - 1 - math.floor(math.log10(size)))}f}"
 
 
+def shown_beside(value: float | None, limit: float | None, digits: int = 4) -> str:
+    """A number beside a limit, with more digits where both would print alike."""
+    if value is not None and limit is not None and math.isfinite(value):
+        digits = digits_beside(value, limit, digits)
+    return shown(value, digits)
+
+
 def standing(value: float | None, digits: int = 4) -> str:
     """A demand; ``-`` of those that an overturned history takes to infinity."""
     return shown(value if value is not None and math.isfinite(value) else None, digits)
@@ -74,12 +81,15 @@ def headed(label: str, unit: str) -> str:
 
 def measured(value: float | None, unit: str, like: float | None = None) -> str:
     """A value in SI as text with its unit: that in which another
-    one was written, if it was.
+    one was written, if it was; with digits that tell both apart.
     """
-    if value is not None and isinstance(like, Written) and like.unit:
-        return f"{shown(value / si_factor(like.unit, unit))} {like.unit}"
     number, name = large(value, unit)
-    return shown(number) if value is None or not name else f"{shown(number)} {name}"
+    other = large(like, unit)[0]
+    if value is not None and isinstance(like, Written) and like.unit:
+        name = like.unit
+        number, other = (each / si_factor(name, unit) for each in (value, like))
+    text = shown_beside(number, other)
+    return text if value is None or not name else f"{text} {name}"
 
 
 def percent(part: float, whole: float) -> str:

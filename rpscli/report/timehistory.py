@@ -316,19 +316,25 @@ def _of_contacts(result: TimeHistoryResult) -> Iterator[Row]:
     if structure.upwards and result.axial is not None and result.axial.sliding_time > 0.0:
         time = f"{shown(1e3 * result.axial.sliding_time)} ms"
         yield f"  above {AMPLE:g} tan(alpha) for", time, "", ""
-    forces = _rows(result, "max_column_shear", "max_column_force", "min_column_force")
-    if structure.columns == 1:  # their number is not known
-        axial = "axial force, all columns"
-        if result.overturning_ratio is not None:
-            axial = "axial force of an outer column, times columns"
-        labels = "total column shear", axial, f"minimum {axial}"
-        forces = ((label, *row[1:]) for label, row in zip(labels, forces, strict=True))
-    yield from forces
+    yield from _forces_of_columns(result)
     designed = ("column_moment", "contact_pressure_ratio", "crushed_width_ratio")
     yield from _rows(result, "overturning_ratio", *designed)
     for what in left_out_of_columns(result):
         yield f"  without {what}", "", "", ""
     yield from _rows(result, "duration")
+
+
+def _forces_of_columns(result: TimeHistoryResult) -> Iterator[Row]:
+    """Largest forces of one column, and whose they are."""
+    forces = _rows(result, "max_column_shear", "max_column_force", "min_column_force")
+    axial = "axial force of a column"
+    shear = f"shear, {result.shear_is_of}"
+    if result.structure.columns == 1:  # their number is not known
+        axial = "axial force, all columns"
+        if result.overturning_ratio is not None:
+            axial = "axial force of an outer column, times columns"
+    labels = shear, axial, f"minimum {axial}"
+    yield from ((label, *row[1:]) for label, row in zip(labels, forces, strict=True))
 
 
 def left_out_of_columns(result: TimeHistoryResult) -> list[str]:
@@ -456,6 +462,10 @@ def column_table(result: TimeHistoryResult) -> Iterator[Part]:
         yield f"p_0 at the largest {listed(of, 'and')}: {doubt}"
     if corner := no_line(result.structure, both=result.both_components):
         yield f"no pressure: {corner}"
+        yield (
+            "moments of tilted columns are about a corner, sqrt(2) times those of the"
+            " inscribed circle; the section resists them about its diagonal"
+        )
 
 
 ENERGIES = (
@@ -561,6 +571,7 @@ def timehistory_document(result: TimeHistoryResult) -> dict[str, Any]:
         "column_forces": {
             end: asdict(forces) for end, forces in result.column_forces.items()
         },
+        "max_column_shear_is_of": result.shear_is_of,
         "column_forces_leave_out": list(result.left_out_of_columns),
         "column_instants": [asdict(each) for each in column.instants] if column else [],
         **values_of(isolated_demands(result), STOREYS),

@@ -325,7 +325,13 @@ HAS: dict[str, Callable[[PodiumStructure], bool]] = {
         structure.yields and HAS["superstructure.storey_height"](structure)
     ),
     "podium.friction": lambda structure: structure.friction is not None,
-    "columns": lambda structure: not structure.left_out_of_columns(both=False),
+    "rows of columns": lambda structure: (
+        structure.counts_columns
+        and not structure.left_out_of_columns(both=False, axial=False)
+    ),
+    "columns": lambda structure: (
+        structure.counts_columns and not structure.left_out_of_columns(both=False)
+    ),
     "designed columns": lambda structure: (
         structure.column is not None and HAS["columns"](structure)
     ),

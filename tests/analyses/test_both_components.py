@@ -172,7 +172,9 @@ def test_limits_are_refused_for_what_is_left_out():
     assert "passes shorter than 25 ms (superstructure.vertical_period)" in no_bound(
         "max_column_shear", unknown
     )
-    assert no_bound("max_column_shear", known) == ""
+    for name in ("max_column_shear", "max_column_force"):  # the mean of all columns
+        assert "(podium.plan, with y)" in no_bound(name, known)
+    assert no_bound("max_column_shear", replace(known, rows=(0, 5), rows_y=(0, 8))) == ""
     for of in (known, unknown):
         assert "(podium.plan, with y)" in no_bound("max_column_force", of)
     assert no_bound("max_rotation", unknown) == ""

@@ -1,5 +1,6 @@
 """What the most loaded column carries in a history: by hand, in the plane and in space."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -108,6 +109,48 @@ def test_the_moment_ends_as_the_upper_end_asks(rho):
     assert M[1] == pytest.approx(-(state.lever * P[1] - state.rise * Q[1]), rel=1e-9)
     assert M[1] == pytest.approx(-M[0], rel=0.05)
     assert abs(state.shear_bottom) > 1.1 * np.max(np.abs(result.trace.shear_bottom)) / 16
+
+
+@needs_compiled_kernels
+@pytest.mark.evidence("forces in columns, friction", "exact")
+def test_square_columns_of_pairs_stand_on_their_corners():
+    """sqrt(2) B beside the axis on flat ends, so that M = sqrt(2) B P; round ones B P. One
+    component tilts them along a side.
+    """
+    square, around = frame(0.0, SQUARE), frame(0.0, ROUND)
+    push = waves(4.0, 0.01, 4.0, seed=1)
+    pair = MotionComponents(push.scaled(0.6), y=push.scaled(0.8))
+    result = time_history(square, pair, AT_ONCE)
+    t, b = denser_trace(result, 5e-4), square.bearing
+    tilted = t.phase != 0
+    x, azimuth = t.rotation[tilted], known(t.azimuth)[tilted]
+    y = known(t.y)
+    F = t.shear_bottom[tilted] * np.cos(azimuth) + y.shear_bottom[tilted] * np.sin(
+        azimuth
+    )
+    pressed = t.normal_bottom[tilted] * np.cos(x) + F * np.sin(x)
+    by_hand = b.half_width * np.max(pressed) / 4.0
+    assert known(result.column_moment) == pytest.approx(
+        math.sqrt(2.0) * by_hand, rel=1e-6
+    )
+    assert time_history(around, pair, AT_ONCE).column_moment == pytest.approx(
+        by_hand, rel=1e-6
+    )
+    demand = known(result.column_demand)
+    assert demand.corner == math.sqrt(2.0)
+    assert abs(demand.instants[0].eccentricity) > 1.3 * b.half_width
+    plane = [time_history(of, push, AT_ONCE).column_moment for of in (square, around)]
+    assert plane[0] == plane[1]
+
+
+def test_upright_square_columns_carry_the_moment_of_their_shears():
+    """1 m/s2: H (50 + 55 kN) 220/420 at an end, whatever the section; a joint gives sqrt(2) N B."""
+    of = frame(0.5, SQUARE)
+    push = ground([0.0, 1.0, 0.0], 0.1)
+    pair = MotionComponents(push.scaled(0.6), y=push.scaled(0.8))
+    assert time_history(of, pair, AT_ONCE).column_moment == pytest.approx(
+        of.bearing.half_height * 105e3 * 220.0 / 420.0, rel=1e-12
+    )
 
 
 @needs_compiled_kernels

@@ -13,7 +13,7 @@ import pytest
 from paper_structures import ground, known, needs_compiled_kernels, podium
 from scipy.signal import lsim
 
-from rpscli.analyses.column_forces import in_shocks
+from rpscli.analyses.column_forces import _levers, in_shocks
 from rpscli.analyses.floor_spectra import fixed_base_floor_spectra, isolated_floor_spectra
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import denser_trace, time_history
@@ -279,6 +279,82 @@ def test_outer_rows_balance_the_moment_of_the_building():
 
 
 @pytest.mark.evidence("forces in columns, friction", "exact")
+@pytest.mark.parametrize("storeys", [0, 3])
+def test_an_outer_column_leans_on_the_beam_with_what_it_carries_more(storeys):
+    """Flat ends bear on two edges: D_N more runs along the line between them, at an angle of
+    alpha - theta to the vertical, and gives D_N tan(alpha - theta) more shear. The other outer
+    columns carry, and resist, as much less.
+    """
+    of = with_plan(storeys, (0.0, 9.0), None) if storeys else structure(0)
+    of = replace(of, bearing=structure(0, rho=0.0).bearing, rows=(0.0, 9.0), columns=4)
+    result = time_history(of, motion(), SHORT)
+    t = denser_trace(result, 5e-4)
+    more = known(result.axial).heaviest["top"] - t.normal_top / 4.0
+    assert more.max() > 0.01 * t.normal_top.max()
+    tilted = t.phase != 0
+    slope = np.where(tilted, np.tan(of.bearing.alpha - np.abs(t.rotation)), 0.0)
+    extra = np.sign(t.rotation) * more * slope
+    of_columns = [
+        np.abs(F / 4.0 + side * extra)
+        for F in (t.shear_top, t.shear_bottom)
+        for side in (-1.0, 1.0)
+    ]
+    assert result.max_column_shear == pytest.approx(np.max(of_columns), rel=1e-3)
+    assert known(result.axial).shear == pytest.approx(np.max(of_columns), rel=1e-9)
+    mean = time_history(replace(of, rows=()), motion(), SHORT)
+    assert result.max_column_shear > 1.001 * mean.max_column_shear
+    assert (mean.shear_is_of, result.shear_is_of) == (
+        "mean of the columns",
+        "most loaded column",
+    )
+
+
+UNEQUAL = (
+    0.0,
+    1.0,
+    8.0,
+)  # at -3, -2 and 5 m from their middle, whose squares are 38/3 in the mean
+
+
+@pytest.mark.evidence("forces in columns, friction", "exact")
+@pytest.mark.parametrize("rows", [UNEQUAL, (0.0, 7.0, 8.0)])
+def test_rows_at_unequal_distances_are_in_equilibrium_at_every_instant(rows):
+    """A rigid beam on three equal rows: forces linear in the place, with the sum N and the
+    moment M of the building, which two rows alone carry as N/2 +- M/L.
+    """
+    two = time_history(with_plan(2, (0.0, 6.0), None), motion(), SHORT)
+    t = denser_trace(two, 5e-4)
+    size = 6.0 * (2.0 * known(two.axial).heaviest["top"] - 0.5 * t.normal_top)
+    M = np.sign(known(two.axial).moments[0][0]) * size
+    assert min(-M.min(), M.max()) > 0.1 * 6.0 * t.normal_top.mean()  # to both sides
+    x = np.array(rows) - np.mean(rows)
+    slope, middle = np.linalg.solve(
+        [[np.sum(x**2), np.sum(x)], [np.sum(x), 3.0]], [M, t.normal_top]
+    )
+    of_rows = middle[:, None] + slope[:, None] * x
+    three = replace(with_plan(2, rows, None), columns=3)
+    axial = known(time_history(three, motion(), SHORT).axial)
+    close = {"rel": 1e-9, "abs": 1e-9 * float(t.normal_top.max())}
+    assert axial.heaviest["top"] == pytest.approx(of_rows.max(axis=1), **close)
+    assert axial.largest["top"] == pytest.approx(of_rows.max(), **close)
+    assert axial.least["top"] == pytest.approx(of_rows.min(), **close)
+    lifts = t.time[(of_rows < 0.0).any(axis=1)]
+    assert axial.lift_off == (pytest.approx(lifts[0]) if len(lifts) else None)
+
+
+def test_a_moment_to_one_side_lifts_the_row_on_the_other_side_only():
+    """By hand: N = 30 kN on rows at -3, -2 and 5 m. With M = 10 kN m/m x 38/3 = 126.7 kN m to the
+    right they carry (30 - 30, 30 - 20, 30 + 50)/3 = 0, 3.3 and 26.7 kN; the far row at 5 m would
+    be lifted by as much to the left: (30 + 30, 30 + 20, 30 - 50)/3, -6.7 kN.
+    """
+    left, right = _levers(UNEQUAL)
+    assert (left, right) == pytest.approx((38.0 / 9.0, 38.0 / 15.0), rel=1e-12)
+    M = 380.0 / 3.0
+    assert [30.0 - M / left, 30.0 + M / right] == pytest.approx([0.0, 80.0], abs=1e-9)
+    assert [30.0 + M / left, 30.0 - M / right] == pytest.approx([60.0, -20.0], abs=1e-9)
+
+
+@pytest.mark.evidence("forces in columns, friction", "exact")
 @pytest.mark.parametrize("azimuth", [0.0, math.pi / 2, math.pi / 4, 0.3])
 def test_corner_columns_carry_what_a_grid_needs_for_the_moments_of_a_plane_motion(
     azimuth,
@@ -291,14 +367,14 @@ def test_corner_columns_carry_what_a_grid_needs_for_the_moments_of_a_plane_motio
     pair = time_history(grid, MotionComponents(x, y=y), SHORT)
     assert plane.impacts > 2
     t, axial = denser_trace(plane, 5e-4), known(plane.axial)
-    M = (
-        6.0 * (4.0 * axial.heaviest["top"] - t.normal_top) / 2.0
+    M = (6.0 * (4.0 * axial.heaviest["top"] - t.normal_top) / 2.0) * np.sign(
+        axial.moments[0][0]
     )  # rows of two carry N/2 +- M/6 m
     places = np.array([(a, b) for a in (0.0, 2.0, 9.0) for b in (0.0, 6.0)])
     places -= places.mean(axis=0)
     # forces linear in the places, with no more than the moments of both directions
     slopes = np.array([math.cos(azimuth), math.sin(azimuth)]) / np.sum(places**2, axis=0)
-    shares = M[:, None] * np.abs(places @ slopes)
+    shares = M[:, None] * (places @ slopes)
     corner = t.normal_top / 6.0 + shares.max(axis=1)
     found = known(pair.axial).heaviest["top"]
     # instants of passes that floors cannot follow are left out of the forces of pairs alone

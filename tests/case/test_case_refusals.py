@@ -18,6 +18,12 @@ from .conftest import (
     refusal,
 )
 
+WITHOUT_END = """\
+  impact: {law: rigid}
+record: {source: motion.at2}
+analysis: {free_vibration: auto}
+limits: {rotation_ratio: 0.5}
+"""
 OF_A_BUILDING = [
     # text, what stands in its place, beginning of the message, and parts of it
     ("storeys: 3", "storeys: 3.0", "3:12: superstructure.storeys = 3.0", "whole number; write 3"),
@@ -152,6 +158,10 @@ OF_A_BUILDING = [
     ("source: motion.at2", "source: a, scale: 2, scale_to: {measure: PGA, value: 1}", "18:31"),
     # limits in their three forms
     ("0.5}\n", "{at_most: 0.5, share: 0.1, fractile: 0.5}}\n", "20:26", "a share or a fractile"),
+    ("0.5}\n", "{at_most: 0.5, of: mean, share: 0.1}}\n", "20:26: limits.rotation_ratio",
+     "must have a share or a fractile or `of: mean`, only one of them; remove the rest"),
+    ("0.5}\n", "{at_most: 0.5, of: median}}\n", "20:45: limits.rotation_ratio.of = 'median'",
+     "must be mean"),
     ("0.5}\n", "{at_most: 0.5, share: 1}}\n", "20:48", "share = 1 must be >= 0 and < 1; 10 % is"),
     ("0.5}\n", "{share: 0.1}}\n", "20:10: limits.rotation_ratio.at_most is missing"),
     ("0.5}\n", "-1}\n", "20:26: limits.rotation_ratio = -1 must be > 0"),
@@ -160,7 +170,13 @@ OF_A_BUILDING = [
     ("rotation_ratio: 0.5}\n", "ductility: 3}\n", "20:10: limits.ductility needs",
      "superstructure.yield, strengths of storeys, which is missing; give it, or remove the limit"),
     ("rotation_ratio: 0.5}\n", "max_column_force: 1 kN}\n", "20:10: limits.max_column_force: the",
-     "without the overturning moment and the shock of impacts", "podium.plan and superstructure.v"),
+     "without the overturning moment and the shock of impacts", "give podium.plan, superstruct",
+     "and podium.columns"),
+    ("rotation_ratio: 0.5}\n", "max_column_shear: 1 kN}\n", "20:10: limits.max_column_shear: the",
+     "known as the mean of the columns only", "give podium.plan and podium.columns, or remove"),
+    (WITHOUT_END, "  plan: {length: 9}\nlimits: {max_column_shear: 1 kN}\n",
+     "18:10: limits.max_column_shear needs podium.columns, which is missing: forces are those of",
+     "all columns together", "give their number, or remove the limit"),
 ]  # fmt: skip
 OF_A_FRAME = [
     ("radius: 1.2", "radius: 200 mm", "5:5", "curvature_ratio = 0.0666667 must be >="),

@@ -1,11 +1,12 @@
-"""Limits in their three forms, for every result that may be limited, and those of `--fail-on`."""
+"""Limits in their forms, for every result that may be limited, and those of `--fail-on`."""
 
 import pytest
 
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.conditions import Condition, conditions_of, parse_condition
 from rpscli.errors import UsageError
-from rpscli.report.limits import requirement_text
+from rpscli.report.limits import bound_text, reached_text, requirement_text
+from rpscli.units import Written
 
 from .conftest import BUILDING, case_of
 
@@ -25,8 +26,8 @@ def limited(text):
     return conditions_of(case_of(text=changed).limits, "the case")
 
 
-def condition(of, at, share=0.0, fractile=None):
-    return Condition(of, at, "the case", share, fractile)
+def condition(name, at, share=0.0, fractile=None, of=None):
+    return Condition(name, at, "the case", share, fractile, of)
 
 
 @pytest.mark.parametrize(
@@ -38,6 +39,10 @@ def condition(of, at, share=0.0, fractile=None):
          "at most 300 mm except in 10 % of the records"),
         ("{drift_ratio: {at_most: 0.005, fractile: 0.84}}",
          condition("drift_ratio", 0.005, fractile=0.84), "at most 0.005 at the 84 % fractile"),
+        ("{drift_ratio: {at_most: 0.005, of: mean}}",
+         condition("drift_ratio", 0.005, of="mean"), "at most 0.005 in the mean"),
+        ("{min_column_force: {at_least: 100 kN, of: mean}}",
+         condition("min_column_force", 1e5, of="mean"), "at least 100 kN in the mean"),
         ("{overturning: 0.05}", condition("overturning", 0.0, 0.05), "at most 5 % of the records"),
         ("{overturning: 0}", condition("overturning", 0.0), "no record"),
         ("{min_column_force: {at_least: 100 kN, share: 0.1}}",
@@ -52,7 +57,7 @@ def condition(of, at, share=0.0, fractile=None):
          condition("full_contact_share", 0.5, 0.1), "at least 0.5 except in 10 % of the records"),
     ],
 )  # fmt: skip
-def test_a_limit_may_have_a_share_or_a_fractile(text, expected, words):
+def test_a_limit_may_have_a_share_a_fractile_or_a_mean(text, expected, words):
     (found,) = limited(text)
     assert found == expected
     assert requirement_text(found) == words
@@ -63,6 +68,34 @@ def test_a_limit_may_have_a_share_or_a_fractile(text, expected, words):
 def test_every_result_of_the_list_may_be_limited(name):
     ((found),) = limited(f"{{{name}: 3}}")
     assert (found.name, found.limit) == (name, 3.0)
+
+
+def test_the_mean_is_judged_of_seven_recordings_and_more():
+    mean = condition("drift_ratio", 0.005, of="mean")
+    assert mean.under(7) == mean
+    assert mean.under(6) == mean.under(1) == condition("drift_ratio", 0.005)
+
+
+@pytest.mark.parametrize(
+    ("value", "limit", "text"),
+    [
+        (0.50004, 0.5, "0.50004"),
+        (0.5, 0.5, "0.5000"),
+        (0.499996, 0.5, "0.499996"),
+        (0.5 * (1.0 + 1e-15), 0.5, "0.5000"),  # rounding
+        (0.51, 0.5, "0.5100"),
+        (0.3000049, Written(0.3, "300 mm"), "300.005 mm"),
+        (0.3, Written(0.3, "300 mm"), "300.0 mm"),
+    ],
+)
+def test_a_value_is_told_from_its_limit(value, limit, text):
+    name = "max_lift" if isinstance(limit, Written) else "rotation_ratio"
+    assert reached_text(condition(name, limit), value) == text
+
+
+def test_limits_are_printed_as_they_were_written():
+    (found,) = limited("{rotation_ratio: 0.50000012}")
+    assert bound_text(found) == "at most 0.50000012"
 
 
 def test_conditions_of_options():

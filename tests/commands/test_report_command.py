@@ -301,6 +301,21 @@ def test_several_records_are_on_one_page(rps, rps_json):
     )
 
 
+def test_the_mean_as_a_criterion_stands_on_pages(rps, study):
+    """Of several records, and of a study of two, whose largest is judged."""
+    rule = "limits={drift_ratio: {at_most: 0.5, of: mean}}"
+    pulses = [f"pulse:half_sine?amplitude=0.{n}g&period=0.6" for n in range(1, 8)]
+    asked = [word for pulse in pulses for word in ("--record", pulse)]
+    rps("report", "small.yaml", *asked, "--set", rule, "-o", "set.html")
+    text = text_of("set.html")
+    assert "at most 0.5 in the mean" in text
+    assert "mean 0.0" in text
+    rps("report", "study.yaml", "--set", rule, "-o", "study.html")
+    text = text_of("study.html")
+    assert "at most 0.5 in the mean" in text
+    assert "judged in place of the mean: fewer than 7 recordings (EN 1998-1)" in text
+
+
 def test_what_moves_the_worst_history_stands_on_its_page(rps, rps_json, monkeypatch):
     """As `rps budget` tells it of the record that turns the columns most."""
     write_case("small.yaml", more="limits: {rotation_ratio: 0.2}\n")

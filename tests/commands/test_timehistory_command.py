@@ -204,6 +204,10 @@ def test_a_least_force_is_judged_from_below(rps):
         "--set",
         "superstructure.vertical_period=0.1",
     )
+    words = ("timehistory", "small.yaml", *known, "--fail-on", "min_column_force=1")
+    refused = rps(*words, exit_code=2)  # of so many columns, times their number
+    assert "min_column_force needs podium.columns" in " ".join(refused.stderr.split())
+    known = *known, "--set", "podium.columns=2"
     words = ("timehistory", "small.yaml", *known, "--fail-on")
     rps(*words, "min_column_force=-1e9")
     result = rps(*words, "min_column_force=1e9", exit_code=10)
@@ -213,6 +217,31 @@ def test_a_least_force_is_judged_from_below(rps):
         *words, "min_column_force=2 MN", exit_code=10, says="MN is below 2 MN (--fail-on)"
     )
     assert "at least 2 MN" in result.stdout
+
+
+def test_the_shear_of_a_column_is_that_of_the_most_loaded_or_no_limit(rps, rps_json):
+    """What it is of stands where it stands; the mean, or the sum, is no limit."""
+    asked = ("timehistory", "small.yaml", "--force", "--figures", "none")
+    plan = ("--set", "podium.plan={length: 8}")
+    four = ("--set", "podium.columns=4")
+    named = {
+        (): "all columns together",
+        four: "mean of the columns",
+        plan: "most loaded column, times their number",
+        (*four, *plan): "most loaded column",
+    }
+    for keys, words in named.items():
+        assert rps_json(*asked, *keys)["max_column_shear_is_of"] == words
+        assert f"shear, {words}  " in rps(*asked, *keys).stdout
+        limit = (*asked, *keys, "--fail-on", "max_column_shear=1 N")
+        known = keys == (*four, *plan)
+        result = rps(*limit, exit_code=10 if known else 2)
+        says = "N exceeds 1 N" if known else "max_column_shear needs podium.columns and"
+        assert says in " ".join(result.stderr.split())
+    shears = [
+        rps_json(*asked, *keys)["max_column_shear"] for keys in (four, (*four, *plan))
+    ]
+    assert shears[1] > shears[0]
 
 
 def test_what_falls_meets_no_limit(rps, rps_json):

@@ -173,12 +173,37 @@ def test_limits_judge_the_set(rps_json):
     assert rps_json(*words, "--set", limit, exit_code=10)["passed"] is False
 
 
+def test_the_mean_of_seven_records_is_a_limit(rps, rps_json):
+    """EN 1998-1: the mean of seven, the largest of six."""
+    pulses = [
+        f"pulse:half_sine?amplitude={0.1 + 0.03 * n:.2f}g&period=0.6" for n in range(7)
+    ]
+    words = ("timehistory", "small.yaml", *asked(pulses))
+    shears = [history["drift_ratio"] for history in rps_json(*words)["histories"]]
+    assert np.mean(shears) < max(shears[:6])
+    at = 0.5 * (np.mean(shears) + max(shears[:6]))
+    limit = ("--set", f"limits.drift_ratio={{at_most: {at:.12g}, of: mean}}")
+    document = rps_json(*words, *limit)
+    assert (document["passed"], document["exit_code"]) == (True, 0)
+    *_, verdict = document["sets"][0]["verdicts"]
+    assert (verdict["of"], verdict["judged_by"]) == ("mean", "mean")
+    assert verdict["mean_of_maxima"] == pytest.approx(np.mean(shears), rel=1e-12)
+    assert "in the mean" in rps(*words, *limit, "--force").stdout
+    six = ("timehistory", "small.yaml", *asked(pulses[:6]), *limit)
+    told = rps(*six, exit_code=10)
+    assert "fewer than 7 recordings (EN 1998-1)" in " ".join(told.stderr.split())
+    *_, verdict = rps_json(*six, "--force", exit_code=10)["sets"][0]["verdicts"]
+    assert (verdict["judged_by"], verdict["exceeded"]) == ("largest", True)
+
+
 def test_a_least_force_judges_the_set_from_below(rps, rps_json):
     known = (
         "--set",
         "podium.plan={length: 8}",
         "--set",
         "superstructure.vertical_period=0.1",
+        "--set",
+        "podium.columns=2",
     )
     words = (
         "timehistory",

@@ -130,7 +130,16 @@ def test_forces_of_columns_leave_out_shocks_where_there_are_any():
         s: s.left_out_of_columns(both=True, axial=False) for s in (rigid, soft, ball)
     }
     assert ["shorter than 25 ms" in "".join(left) for left in shear.values()] == [1, 0, 0]
-    assert shear[soft] == shear[ball] == ()  # as under one component
+    assert shear[soft] == shear[ball]  # as under one component
+    for of in (rigid, soft, ball):
+        (moment,) = of.left_out_of_columns(both=False, axial=False)
+        assert "the overturning moment of the building (podium.plan)" in moment
+        rows = replace(of, rows=(0.0, 6.0), columns=4)
+        assert rows.left_out_of_columns(both=False, axial=False) == ()
+    frame = PodiumStructure(bearing, 2e4, 2e5)
+    assert frame.left_out_of_columns(both=False) == ()
+    (moment,) = replace(frame, columns=4).left_out_of_columns(both=False)
+    assert moment == "the overturning moment of leaning columns (podium.plan)"
     assert "the shock of impacts" in soft.left_out_of_columns(both=True)[1]
     assert len(ball.left_out_of_columns(both=True)) == 1
     assert len(ball.left_out_of_columns(both=False)) == 1

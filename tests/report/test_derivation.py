@@ -198,3 +198,8 @@ def test_what_the_model_and_codes_do_not_cover_is_said():
     pair = result_of("square", both=True)
     assert any("corner" in str(part) for part in column_table(pair))
     assert pair.contact_pressure_ratio is pair.crushed_width_ratio is None
+    (moment,) = (row for row in column_derivations(pair) if row.symbol == "M")
+    assert moment.formula == "√(2) (e P − d Q)"
+    sides = [evaluated(side) for side in moment.numbers.split(" = ")]
+    assert sides[0] == pytest.approx(moment.value, rel=1e-3)
+    assert "about a corner" in str(list(column_table(pair)))

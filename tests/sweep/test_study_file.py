@@ -253,7 +253,7 @@ def sampled(distribution):
         (
             *added(f"{WHOLE}limits: {{max_column_force: 1}}"),
             (
-                "in all systems podium.plan and superstructure.vertical_period",
+                "in all systems podium.columns, podium.plan and superstructure.vertical",
                 "leaves out",
             ),
         ),

@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,9 +13,14 @@ from scipy.stats import beta, binom
 from rpscli import load_study
 from rpscli.case.conditions import Condition
 from rpscli.errors import CaseError
+from rpscli.report.limits import verdict_text
 from rpscli.report.study.registry import not_judged
 from rpscli.report.study.report import key_columns, label
-from rpscli.report.study.statistics import summary_columns, summary_document
+from rpscli.report.study.statistics import (
+    summary_columns,
+    summary_document,
+    verdict_columns,
+)
 from rpscli.sweep.points import lay_out
 from rpscli.sweep.statistics.fractiles import clustered, fractiles, share
 from rpscli.sweep.statistics.grouping import grouping
@@ -216,6 +222,110 @@ def test_fractiles_that_are_a_whole_number_of_histories_are_not_rounded_up():
         29,
         84,
         100,
+    ]
+
+
+SEVEN = (0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8)  # in the mean 0.5
+MEAN = Condition("rotation_ratio", 0.5, "", of="mean")
+
+
+def judged_by_mean(values, condition=MEAN, falls=()):
+    """The verdict on these values, each of a recording of its own; some overturned."""
+    names = [f"{number}.at2" for number in range(len(values))]
+    fallen_ones = ["overturned" if n in falls else "survived" for n in range(len(values))]
+    demands = [{condition.name: value} for value in values]
+    records = Records.of(fallen_ones, demands, names)
+    (verdict,) = judged_records(records, names, [condition])
+    return verdict
+
+
+@pytest.mark.evidence("statistics and fragilities", "exact")
+@pytest.mark.parametrize(
+    ("values", "falls", "limit", "exceeded", "mean", "by"),
+    [
+        (SEVEN, (), 0.5, False, 0.5, "mean"),
+        (SEVEN, (), 0.499, True, 0.5, "mean"),
+        ((0.1,) * 7, (), 0.1, False, 0.1, "mean"),  # whose sum is 0.7000000000000001
+        (SEVEN, (0,), 0.5, True, math.inf, "mean"),
+        (SEVEN[:6], (), 0.5, True, 0.45, "largest"),  # in the mean it would be met
+        (SEVEN[:6], (), 0.7, False, 0.45, "largest"),
+        (SEVEN[:3], (2,), 0.9, True, math.inf, "largest"),
+        (SEVEN[:1], (), 0.2, False, 0.2, "largest"),
+    ],
+)
+def test_the_mean_of_the_maxima_is_a_criterion(values, falls, limit, exceeded, mean, by):
+    found = judged_by_mean(values, replace(MEAN, limit=limit), falls)
+    assert (found.exceeded, found.judged_by) == (exceeded, by)
+    assert found.mean == pytest.approx(mean, rel=1e-12)
+    assert found.word == ("EXCEEDED" if exceeded else "met")
+    assert found.shown_by is None
+
+
+def test_the_mean_of_least_forces_is_judged_from_below():
+    least = Condition("min_column_force", 4e5, "", of="mean")
+    values = [1e5 * number for number in range(1, 8)]
+    assert not judged_by_mean(values, least).exceeded
+    assert judged_by_mean(values, replace(least, limit=4.01e5)).exceeded
+    few = judged_by_mean(values[2:], least)
+    assert (few.exceeded, few.judged_by, few.value) == (True, "least", 3e5)
+    assert judged_by_mean(values, least, falls=(6,)).mean == -math.inf
+
+
+def test_a_verdict_on_the_mean_says_what_it_was_judged_by():
+    texts = {number: verdict_text(judged_by_mean(SEVEN[:number])) for number in (7, 6, 1)}
+    few = "judged in place of the mean: fewer than 7 recordings (EN 1998-1)"
+    assert texts == {
+        7: "mean 0.5000 of 7",
+        6: f"largest 0.7000 of 6, {few}",
+        1: f"largest 0.2000 of 1, {few}",
+    }
+    assert verdict_text(judged_by_mean(SEVEN, falls=(0,))) == (
+        "mean overturned of 7, 1 overturned"
+    )
+    columns = {
+        each.name: list(each.values)
+        for each in verdict_columns(
+            (), [judged_by_mean(SEVEN), judged_by_mean(SEVEN[:6])]
+        )
+    }
+    assert columns["of"] == ["mean", "mean"]
+    assert columns["judged_by"] == ["mean", "largest"]
+    assert columns["mean_of_maxima"] == pytest.approx([0.5, 0.45])
+    assert columns["admissible_share"] == [None, None]
+
+
+def test_a_study_of_few_recordings_is_judged_by_its_largest(study_of):
+    """Four of five seeds, of which one failed: 0.1, 0.2, 0.4 and 0.5."""
+    table, result = judged_study(study_of)
+    (verdict,) = [
+        found
+        for found in judged(table, result, [replace(MEAN, limit=0.45)])
+        if found.values == (0.10, 0, 0.5)
+    ]
+    assert (verdict.judged_by, verdict.exceeded) == ("largest", True)
+    assert verdict.mean == pytest.approx((0.1 + 0.2 + 0.4 + 0.5) / 4)
+
+
+def test_components_of_four_recordings_are_not_a_mean_of_eight():
+    """What counts are recordings, as in intervals."""
+    names = [f"fema_p695:farfield/{n}/{way}" for n in range(1, 5) for way in "ab"]
+    demands = [{"rotation_ratio": 0.1 * number} for number in range(1, 9)]
+    records = Records.of(["survived"] * 8, demands, names)
+    (verdict,) = judged_records(records, names, [MEAN])
+    assert (verdict.judged_by, verdict.exceeded) == ("largest", True)
+    assert "of 8 from 4 recordings" in verdict_text(verdict)
+
+
+def test_weights_enter_the_mean_as_so_many_histories():
+    rows = np.array([[0.2, 0.4, 0.9, np.nan], [0.2, np.inf, 0.9, 0.1]])
+    weights = np.array([[1.0, 1.0, 1.0, 1.0], [2.0, 1.0, 0.0, 1.0], [3.0, 0.0, 0.0, 0.0]])
+    found = decisive(rows, weights, MEAN)
+    assert found[:, 0] == pytest.approx([0.5, 0.8 / 3, 0.2])
+    assert found[:, 1] == pytest.approx([math.inf, math.inf, 0.2])
+    assert judge(rows, weights, MEAN).met.tolist() == [
+        [True, False],
+        [True, False],
+        [True, True],
     ]
 
 
@@ -447,6 +557,31 @@ def test_what_a_system_does_not_have_is_empty_and_not_judged(mixed, workplace, o
     assert [*not_judged(study.layout, [Condition("max_base_shear", 1.0, "")])] == [
         told.removeprefix("statistics: ")
     ]
+
+
+def test_a_mean_of_columns_is_no_force_of_one(mixed):
+    """Beside a system with rows of columns one without them is neither judged nor shown."""
+    change = {
+        "vary": [{"podium.plan": [None, {"length": 9.0}]}, {"podium.columns": [4]}],
+        "whole_histories": True,
+        "limits": {"max_column_shear": 1.0},
+        "reports": [],
+    }
+    study = load_study(mixed | change)
+    result = study.run()
+    assert np.isfinite(result["max_column_shear"]).all()
+    judged_ones = [
+        str(value)
+        for value, limit in zip(
+            result.verdicts["podium.plan"], result.verdicts["limit"], strict=True
+        )
+        if limit == "max_column_shear"
+    ]
+    assert judged_ones
+    assert all("9" in value for value in judged_ones)
+    largest = result.statistics["max_column_shear_largest"]
+    assert np.isnan(largest).tolist() == [True, True, False, False]
+    assert any("max_column_shear needs" in note for note in result.notes)
 
 
 def test_what_no_system_has_is_refused(mixed):

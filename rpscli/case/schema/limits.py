@@ -3,13 +3,14 @@ table that may be limited.
 
 A limit is a number, which every record must keep; or a number that a share of the records
 may exceed, `{at_most: 0.5, share: 0.1}`; or one for a fractile, `{at_most: 0.5, fractile:
-0.84}`. Results of which small values are bad have `at_least` in place of `at_most`.
+0.84}`; or one for the mean of the records, `{at_most: 0.5, of: mean}`. Results of which
+small values are bad have `at_least` in place of `at_most`.
 """
 
 from __future__ import annotations
 
 from functools import cache
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, create_model, model_validator
 
@@ -35,11 +36,17 @@ class LimitRule(Section):
     """share of the records that may exceed the limit; 0 by default"""
     fractile: Fractile | None = None
     """fractile of the demand that must meet the limit, in place of a share"""
+    of: Literal["mean"] | None = None
+    """mean: the mean of the maxima must meet the limit; of fewer than 7 recordings the
+    largest (EN 1998-1)"""
 
     @model_validator(mode="after")
     def _one_rule(self) -> Self:
-        if self.share is not None and self.fractile is not None:
-            refuse("must have a share or a fractile, not both")
+        rules = self.share, self.fractile, self.of
+        if sum(rule is not None for rule in rules) > 1:
+            refuse(
+                "must have a share or a fractile or `of: mean`, only one of them; remove the rest"
+            )
         return self
 
 

@@ -463,7 +463,8 @@ def draw_section_forces(
     bearing = structure.bearing
     mass = structure.columns_mass / structure.columns
     along = np.linspace(0.0, 2.0 * bearing.half_height, POINTS)
-    forces = demand.at_largest_moment.section_forces(bearing, mass, along)
+    *forces, moments = demand.at_largest_moment.section_forces(bearing, mass, along)
+    forces.append(demand.corner * moments)
     names = ("axial force $P$ [kN]", "shear $Q$ [kN]", "moment $M$ [kN m]")
     for axes, values, name in zip(panels, forces, names, strict=True):
         shown = 1e-3 * values

@@ -120,16 +120,19 @@ def verdict_columns(keys: Sequence[str], verdicts: Sequence[Verdict]) -> list[Co
         of = verdict.condition
         found = verdict.fractile
         bounds = (None, of.limit) if of.from_below else (of.limit, None)
-        share = of.share if of.fractile is None else None
+        share = of.share if of.fractile is None and of.of is None else None
         at = None if found is None else reached(found)
+        mean = None if verdict.mean is None else reached(verdict.mean)
         unit = limit_unit(of.name)
-        limits.append((verdict.values, of.name, unit, *bounds, share, of.fractile, at))
+        asked = of.fractile, at, of.of, mean, verdict.judged_by
+        limits.append((verdict.values, of.name, unit, *bounds, share, *asked))
         flags = verdict.exceeded, verdict.shown
         results.append((verdict.overturned, *flags, verdict.shown_by, of.source))
     heads = "limit, unit, at_most [SI], at_least [SI], admissible_share, fractile"
+    found_heads = "value_at_fractile [SI], of, mean_of_maxima [SI], judged_by"
     beyond = [verdict.beyond for verdict in verdicts]
     return [
-        *keyed(keys, f"{heads}, value_at_fractile [SI]", limits),
+        *keyed(keys, f"{heads}, {found_heads}", limits),
         *counted_columns(beyond),
         *share_columns("beyond", beyond),
         *columns_of(
@@ -183,6 +186,8 @@ def verdict_document(keys: Sequence[str], verdict: Verdict) -> dict[str, Any]:
         "value": verdict.value,
         "record": verdict.record,
         "value_at_fractile": verdict.fractile,
+        "mean_of_maxima": verdict.mean,
+        "judged_by": verdict.judged_by,
         "exceeded": verdict.exceeded,
         "shown": verdict.shown,
         "shown_by_recordings": verdict.shown_by,

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rpscli.analyses.column_forces import OF_COLUMNS
 from rpscli.analyses.demand import demands
 from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
@@ -75,6 +76,8 @@ def summary(table: Table, fixed: FixedBaseReferences) -> Summary:
             ]
         )
         known_of = np.isfinite(values).reshape(len(lacks), -1).any(axis=1)
+        if quantity.name in OF_COLUMNS and not lacks.all():
+            known_of = np.zeros_like(lacks)  # a mean of columns beside forces of one
         values[np.repeat(lacks & ~known_of, table.layout.points_of_system)] = np.nan
     rows = (_row(known, each) for each in found.groups)
     notes = [*found.notes, *_still_moving(table)]

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.column_forces import OF_COLUMNS
 from rpscli.case.conditions import EVENTS, NOT_SHOWN, RATE, Condition
 from rpscli.case.text.document import Fault
 from rpscli.records.measures import SHOWN, Of
@@ -18,6 +19,9 @@ from rpscli.sweep.statistics.hazard import exceeded, rate_of_shares, read_hazard
 from rpscli.sweep.statistics.summary import Records, Summary
 from rpscli.sweep.table import Array, Indices, Outcomes, Table
 
+MEAN_ROUNDING = 1e-12
+"""Of a mean, which may be a sum's last digits beyond equal values."""
+
 
 @dataclass(frozen=True)
 class Verdict:
@@ -26,8 +30,9 @@ class Verdict:
     `values` are those of the keys of a summary. `beyond` are histories that exceed the
     limit: every overturned one does, `overturned` of them where the condition is on a
     result. `value` is the worst demand, infinite where it overturned, and `record` had
-    it. `fractile` is the demand at the fractile of the condition, if it has one. Without
-    any history nothing is exceeded.
+    it. `fractile` is the demand at the fractile of the condition, if it has one, `mean`
+    the mean of the demands of a condition on it, infinite with an overturned one.
+    Without any history nothing is exceeded.
 
     A limit that a share of the records may exceed is *shown* to be kept if the
     interval of the probability ends below that share. One for every record says
@@ -48,6 +53,18 @@ class Verdict:
     exceeded: bool
     strictly: bool = False
     interval: tuple[float, float] | None = None
+    mean: float | None = None
+
+    @property
+    def judged_by(self) -> str | None:
+        """What a condition on the mean was judged by: of few
+        recordings it is the worst.
+        """
+        if self.condition.of is None:
+            return None
+        if self.condition.under(self.beyond.recordings).of is not None:
+            return "mean"
+        return "least" if self.condition.from_below else "largest"
 
     @property
     def word(self) -> str:
@@ -165,13 +182,30 @@ def judge(demands: Array, weights: Array, condition: Condition) -> Judgement:
     """
     total = weights @ (~np.isnan(demands)).T
     beyond = weights @ (demands > condition.sign * condition.limit).T
+    if condition.of == "mean":  # where it is beyond, all beyond it are too many
+        limit = condition.sign * condition.limit
+        most = limit + MEAN_ROUNDING * abs(limit)
+        beyond = np.where(means(demands, weights) > most, beyond, 0.0)
     return Judgement(total, beyond, _admissible(condition, total))
+
+
+def means(demands: Array, weights: Array) -> Array:
+    """(weightings, rows) means of demands (rows, histories), infinite
+    with one that overturned; NaN without any.
+    """
+    total = weights @ (~np.isnan(demands)).T
+    fallen = weights @ np.isposinf(demands).T
+    sums = weights @ np.nan_to_num(demands, nan=0.0, posinf=0.0).T
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.where((fallen > 0.0) & (total > 0.0), np.inf, sums / total)
 
 
 def decisive(demands: Array, weights: Array, condition: Condition) -> Array:
     """(weightings, rows) least demands that no more than the
-    admissible histories exceed.
+    admissible histories exceed; of a condition on the mean, means.
     """
+    if condition.of == "mean":
+        return means(demands, weights)
     found = np.full((len(weights), len(demands)), np.nan)
     for place, row in enumerate(demands):
         order = np.argsort(row, kind="stable")[: int((~np.isnan(row)).sum())]
@@ -231,11 +265,15 @@ def verdicts(
     for condition in (each for each in asked if each.name != NOT_SHOWN):
         demands = worse(table, condition.name)[points]
         every = np.ones((1, len(points)))
-        counted = judge(demands[None], every, condition)
+        recordings = len(np.unique(table.clusters[points]))
+        counted = judge(demands[None], every, condition.under(recordings))
         at = None
+        mean = None
         worst = int(np.argmax(demands))
         if condition.fractile is not None:
             at = condition.sign * float(decisive(demands[None], every, condition)[0, 0])
+        if condition.of == "mean":
+            mean = condition.sign * float(means(demands[None], every)[0, 0])
         of_result = condition.name not in EVENTS
         found.append(
             Verdict(
@@ -250,6 +288,7 @@ def verdicts(
                 fractile=at,
                 exceeded=not counted.met[0, 0],
                 strictly=strictly,
+                mean=mean,
             )
         )
     return found
@@ -307,8 +346,18 @@ def _limits_known(
     return [
         each
         for each in (*own[0].limits, *further)
-        if each.name not in lacking or np.isfinite(table.columns[each.name][points]).any()
+        if each.name not in lacking or _is_known(table, points, each.name)
     ]
+
+
+def _is_known(table: Table, points: Indices, name: str) -> bool:
+    """Whether points have a result all the same; the mean of columns
+    is not that of one, beside systems that have this.
+    """
+    others = table.layout.properties
+    if name in OF_COLUMNS and any(name not in each.lacking for each in others):
+        return False
+    return bool(np.isfinite(table.columns[name][points]).any())
 
 
 def _on_rate(

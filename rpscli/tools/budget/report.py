@@ -22,7 +22,7 @@ from rpscli.report.figures.look import Look
 from rpscli.report.files import Files
 from rpscli.report.limits import bound_text
 from rpscli.report.page import Block, Picture, Section, page_look, pictures
-from rpscli.report.table import Table, columns_of, csv_text, headed, large, shown
+from rpscli.report.table import Table, columns_of, csv_text, headed, large, shown_beside
 from rpscli.sweep.statistics.fractiles import HIGH, LOW, Share, fractiles, share_of
 from rpscli.sweep.statistics.summary import Records
 from rpscli.sweep.statistics.verdicts import exceeds, worse
@@ -110,7 +110,8 @@ class Effect(NamedTuple):
         assert self.quantity is not None, "events have no value"
         if not np.isfinite(self.values[0]):
             return "overturned"
-        text = shown(large(self.values[0], self.quantity.unit)[0])
+        limit = large(self.limit.limit if self.limit else None, self.quantity.unit)[0]
+        text = shown_beside(large(self.values[0], self.quantity.unit)[0], limit)
         return f"{text} {_word(self.exceeded[0])}" if self.limit else text
 
     def text(self, row: int) -> str:

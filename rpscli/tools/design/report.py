@@ -140,7 +140,8 @@ def answer_tables(answer: Answer, verdicts: Sequence[Verdict]) -> Iterator[Part]
     judged = []
     for row, requirement, verdict in requirement_rows(answer, verdicts):
         _, word, asked, result = verdict_texts(verdict)
-        if verdict.condition.name in LIMITS and verdict.fractile is None:
+        at_one = verdict.fractile is None and verdict.judged_by is None
+        if verdict.condition.name in LIMITS and at_one:
             demand = float(answer.results[row, 0, place])
             result = f"{reached_text(verdict.condition, demand)}; {result}"
         met_by = f"{answer.met[row, 0].sum()}{'; governs' * bool(answer.governs[row])}"

@@ -106,7 +106,8 @@ def _share(demands: Array, weights: Array, event: Condition) -> Array:
 
 def requirements_of(task: DesignTask, layout: StudyPoints) -> tuple[Requirement, ...]:
     """Requirements in the order of verdicts; refuse a design that requires nothing."""
-    limits = layout.properties[0].limits
+    recordings = len(np.unique(layout.clusters))
+    limits = [limit.under(recordings) for limit in layout.properties[0].limits]
     several = len(layout.scales) > 1
     (measure,) = shown_keys(layout, (INTENSITY,))
     found = [

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from rpscli.records.target import COMPONENTS, NOT_VERIFIED, Component
+from rpscli.units import digits_beside
 
 SIX_DIGITS = 1e-6
 """Of ratios, by which factors that are written with six digits may miss a requirement."""
@@ -84,13 +85,12 @@ class Requirements:
             )
         if self.mean_pga:
             known = not math.isnan(pga_ratio)
-            text = f"{pga_ratio:.3f}" if known else "the target has no value at T = 0"
+            text = _ratio(pga_ratio, 1.0) if known else "the target has no value at T = 0"
             met = pga_ratio >= 1.0 - SIX_DIGITS if known else None
             found.append(Rule("mean PGA over the target's", ">= 1", text, met))
         met = least_ratio >= self.least - SIX_DIGITS
-        found.append(
-            Rule(f"mean/target, {span}", f">= {self.least:g}", f"{least_ratio:.3f}", met)
-        )
+        text = _ratio(least_ratio, self.least)
+        found.append(Rule(f"mean/target, {span}", f">= {self.least:g}", text, met))
         if self.span is not None:
             found.append(self._range_of_periods(self.span, looked_at, structure))
         return tuple(found)
@@ -116,6 +116,11 @@ class Requirements:
         )
         text = f"{text} = {ends[0]:.3g} to {ends[1]:.3g} s"
         return Rule("range of periods", text, span, covers)
+
+
+def _ratio(value: float, least: float) -> str:
+    """A ratio beside what it must be at least, to be told from it."""
+    return f"{value:.{digits_beside(value, least, 3)}f}"
 
 
 RULES = {

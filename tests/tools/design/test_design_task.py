@@ -97,6 +97,25 @@ def design_json(design):
     return invoke
 
 
+def test_a_limit_on_the_mean_is_met_by_the_best_design(design, design_json):
+    """The search and the study of the best design find the same mean, at most the limit."""
+    mean = "limits={max_cap_beam_displacement: {at_most: 3 mm, of: mean}}"
+    words = FRAME, "--set", mean, "--set", "search.resamples=0"
+    found = design_json(*words)
+    (asked,) = (each for each in found["requirements"] if each["of"] == "mean")
+    assert (asked["judged_by"], asked["met"]) == ("mean", True)
+    assert asked["value"] == pytest.approx(asked["mean_of_maxima"], rel=1e-9)
+    assert 0.002 < asked["value"] <= 0.003
+    assert "mean 2.989 mm of 7" in design(*words, "--force").output
+    six = FRAME.replace(", 0.29 g", "")
+    (asked,) = (
+        each for each in design_json(six, *words[1:], "-o", "six")["requirements"]
+        if each["of"] == "mean"
+    )  # fmt: skip
+    assert asked["judged_by"] == "largest"
+    assert asked["value"] <= 0.003
+
+
 @pytest.mark.evidence("design", "exact")
 def test_one_unknown_against_the_exact_answer(design, design_json):
     # 30 % of seven are two: the third largest peak must not lift the frame.
