@@ -60,6 +60,13 @@ class Row(NamedTuple):
         return f"{self.cause}: {self.change}" if self.change else self.cause
 
 
+def _ratio(value: float, own: float) -> str:
+    """Over the value as the case is; ``-`` where one of them is none, or overturns."""
+    if own == 0.0 or not np.isfinite([value, own]).all():
+        return "-"
+    return f"{value / own:.3g}"
+
+
 class Effect(NamedTuple):
     """Of one limit or result on all rows."""
 
@@ -182,10 +189,7 @@ class Budget:
             text = (
                 "overturned" if np.isinf(value) else shown(large(value, quantity.unit)[0])
             )
-            ratio = value / effect.values[0] if effect.values[0] else np.nan
-            cells.append(
-                [name, text, f"{ratio:.3g}" if np.isfinite(ratio) else "-", word]
-            )
+            cells.append([name, text, _ratio(value, effect.values[0]), word])
         bound = "" if effect.limit is None else bound_text(effect.limit)
         return Table.of_texts(
             ["", headed(quantity.label, quantity.unit), "ratio", bound], cells
