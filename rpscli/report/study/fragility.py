@@ -323,22 +323,11 @@ def _fragility(
     counts = len(kept), int(beyond.sum()), int(table.overturned[kept].sum())
     total = float(options.dispersion.total(fit.beta))
     largest = float(intensity.max(initial=0.0))
-    smallest = float(intensity.min(initial=largest))
+    ends = largest, float(intensity.min(initial=largest))
     seen = binned(table, kept, intensity, beyond)
     failed = len(group.every) - len(kept)
-    return Fragility(
-        group.values,
-        limit,
-        fit,
-        grid,
-        seen,
-        *counts,
-        failed,
-        place,
-        total,
-        largest,
-        smallest,
-    )
+    known = (fit, grid, seen, *counts, failed, place, total)
+    return Fragility(group.values, limit, *known, *ends)
 
 
 def binned(
