@@ -57,8 +57,8 @@ def test_what_the_contact_time_moves():
             counts = {ms: np.isinf(each).sum() for ms, each in found.items()}
             fell[name, scale] = max(abs(n - counts[2.0]) for n in counts.values())
             if math.isfinite(max(middle.values())):
-                for ms in moved:
-                    moved[ms][name, scale] = abs(100.0 * (middle[ms] / middle[2.0] - 1.0))
+                for ms, each in moved.items():
+                    each[name, scale] = abs(100.0 * (middle[ms] / middle[2.0] - 1.0))
     short = max(max(moved[ms].values()) for ms in (0.5, 1.0, 4.0))
     long = max(moved[10.0].values())
     words = "under 22 far-field pairs, as recorded and times 0.6, changes by up to"

@@ -98,7 +98,9 @@ def command(
         "warnings": given.case.warnings,
         "files": [],
     }
-    terminal.result(document, [Heading(given.case.title), *_tables(found), found.remarks])
+    tables = [Heading(given.case.title), *_tables(found), found.remarks]
+    fault = AnalysisError(f"{data}: {found.fault}") if found.fault else None
+    terminal.finish(document, tables, fault)
 
 
 def _tables(found: Identified) -> Iterator[Part]:
