@@ -480,7 +480,7 @@ def pulse_of(source: str, options: SpectrumOptions) -> PulseSection:
         raise CaseError(
             f"{source} is not a pulse with a period such as"
             " pulse:sine?amplitude=1g&period=1; give that of a file: pulses:"
-            " {{PurePath(source).name}: {period: 0.8, amplitude: 3.9}}"
+            f" {{{PurePath(source).name}: {{period: 0.8, amplitude: 3.9}}}}"
         )
     return PulseSection.model_construct(period=of.quantity("period", "time"))
 
