@@ -195,6 +195,7 @@ def test_a_study_is_computed_once(rps, study, rps_json):
         "synthetic:?pga=0.5g",
         "at most 0.5 in every record",
         "rps sweep",
+        "one horizontal direction at a time, not conservative",
     ):
         assert part in text
     # The folder of the study holds points that `rps sweep` goes on with, and no files of it.
