@@ -415,7 +415,8 @@ def passes_text(result: TimeHistoryResult) -> str | None:
         f"{result.passes:.0f} passes near upright, however wide; {lost:.0f} of them lose"
         " like an impact (l > 0.5); contact time"
         f" {1e3 * result.structure.impact_law.contact_time:g} ms assumed: it decides how"
-        f" the motion dies out, but hardly its maxima; {accumulated(result)}{ROUND}"
+        " the motion dies out, and moves medians of largest rotations by up to 9 %"
+        f" (0.5 to 4 ms); {accumulated(result)}{ROUND}"
     )
 
 
