@@ -204,6 +204,29 @@ def si_value(text: str, unit: str) -> float:
     return float(number) * si_factor(written, unit)
 
 
+def computed_remedy(text: str, unit: str) -> str:
+    """What was perhaps meant by a value of another kind, in the SI unit; or nothing.
+
+    >>> computed_remedy("8.5 deg", "1"), computed_remedy("2.5 Hz", "s")
+    ('; an angle? tan(8.5 deg) = 0.149', '; a frequency? 1/(2.5 Hz) = 0.4 s')
+    >>> computed_remedy("500 kN", "kg")
+    '; a weight? 500 kN/g = 50.99 t'
+    """
+    match = WITH_UNIT.match(text)
+    found = unit_of_text(match[2]) if match and match[2] else None
+    if match is None or found is None:
+        return ""
+    value = float(match[1]) * found.factor
+    hertz = unit_of_text("Hz")
+    if unit == "1" and found.dimension == ANGLE and abs(value) < 0.5 * math.pi:
+        return f"; an angle? tan({text}) = {math.tan(value):.3g}"
+    if unit == "s" and hertz and found.dimension == hertz.dimension and value > 0.0:
+        return f"; a frequency? 1/({text}) = {1.0 / value:.4g} s"
+    if unit == "kg" and found.dimension == FORCE and value > 0.0:
+        return f"; a weight? {text}/g = {1e-3 * value / STANDARD_GRAVITY:.4g} t"
+    return ""
+
+
 def bare_or_si(text: str, unit: str) -> float:
     """A number in the SI unit, or one with its own unit."""
     try:

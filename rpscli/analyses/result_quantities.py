@@ -195,6 +195,9 @@ YIELDING = (
 SAMPLED = (
     _Q("max_roof_displacement", "m", "roof displacement", limit="0.5", needs="superstructure"),
     _Q("max_floor_velocity", "m/s", "floor velocity", limit="1", needs="superstructure"),
+    _Q("base_shear_with_dashpots", "N", "base shear with dashpots", limit="2e6",
+        needs="superstructure",
+        meaning="largest force of the floors' inertia: base shear is that of springs alone"),
     _Q("fixed_base_ratio", "-", "base shear over fixed base", r"$V_b/V_{b,fixed}$", limit="0.5",
         demand=True, needs="superstructure",
         meaning="largest base shear over that of the fixed base"),

@@ -236,6 +236,21 @@ class TimeHistoryResult(Demand):
             t.floor_displacements[:, -1], t.floor_velocities[:, -1], dt
         )
 
+    @cached_property
+    def base_shear_with_dashpots(self) -> float | None:
+        """Largest force of the floors' inertia on the cap beam, |sum m_i a_i| at the
+        samples: what springs and dashpots of storeys carry [N]; None without storeys.
+        """
+        building = self.structure.superstructure
+        if building is None:
+            return None
+        forces = [
+            of.floor_accelerations @ building.masses
+            for of in (self.trace, self.trace.y)
+            if of is not None
+        ]
+        return float(np.max(np.hypot.reduce(forces), initial=0.0))
+
     @property
     def fixed_base_ratio(self) -> float | None:
         """Base shear over that of the fixed base; None without it, or if that is 0."""

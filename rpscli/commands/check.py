@@ -251,15 +251,51 @@ def device_tables(
     for row in back:
         forces = (shown(1e-3 * row[name]) for name in ("friction", "largest_friction"))
         share = shown(row["rotation"] / structure.critical_rotation, 2)
-        end = "yes" if row["recentres"] else "no"
         way = shown(row["rotation"]), share, shown(row["displacement"])
-        swings.append((*way, *forces, end))
+        swings.append((*way, *forces, _end_of_return(row)))
     heads = (
         "from rest at rad",
         "of theta_cr",
         "u_b m",
         "friction kN",
-        "largest kN",
+        "at most kN",
         "comes back",
     )
     yield Table.of_texts(heads, swings)
+    yield from _about_returns(back)
+
+
+def _end_of_return(row: Mapping[str, Any]) -> str:
+    """Whether the storey comes back, or how far from upright it stays."""
+    if row["recentres"]:
+        return "yes"
+    rest = row["rest"]
+    if rest is None:
+        band = row["dead_band"]
+        near = band is not None and band < row["displacement"]
+        return f"to {shown(1e3 * band, 3)} mm or less" if near else "no"
+    if rest >= row["displacement"]:
+        return "no, it stays"
+    return f"to {shown(1e3 * abs(rest), 3)} mm"
+
+
+def _about_returns(back: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    """What the columns are, and where friction holds the storey."""
+    text = (
+        "at most: the largest friction against which it would come back upright from"
+        " there, slowly"
+    )
+    band = back[0]["dead_band"]
+    if band:
+        text += (
+            f"; friction holds it at rest within {shown(1e3 * band)} mm of upright, where"
+            " friction is the restoring force, F_d/K"
+        )
+    if band is None:
+        text += "; friction holds it at rest wherever it stands still"
+    elif back[0]["rest"] is not None:
+        text += (
+            "; comes back to: where a rigid building stays after its last swing, if"
+            " friction alone takes energy"
+        )
+    yield text

@@ -5,7 +5,7 @@ their options, and plugins.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from importlib import resources
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -63,50 +63,63 @@ def _known() -> list[str]:
 
 
 @click.command("explain")
-@click.argument("words", metavar="KEY", nargs=-1, required=True, **completing(_known))
+@click.argument("words", metavar="[KEY]", nargs=-1, **completing(_known))
 @terminal_options
 def command(words: tuple[str, ...], terminal: Terminal) -> None:
     """What KEY means: a key of cases or studies, a report, a result, a
     symbol, a word of tables.
 
     Keys are named in full (podium.bearing.slenderness), by their end (slenderness)
-    or by their symbol (rho). `plugins` lists what other packages add. `rps doctor`
-    says where the guide is.
+    or by their symbol (rho), words as they are printed (stays tilted). Without a KEY
+    everything that has a meaning is listed. `plugins` lists what other packages add. `rps
+    doctor` says where the guide is.
     """
     word = " ".join(words)
+    if not word:
+        terminal.result(*_everything())
+        return
+    report = [*_reports(word, everything=False, options=False)]
     meant = [
         Entry("words", {"word": name, "meaning": meaning}, (Heading(name), meaning))
         for name, meaning in glossary()
-        if word.lower() in _names(name)
+        if _as_printed(word) in _names(name)
     ]
     named = [
-        q for q in EVERY.values() if word == q.name or (word == q.label and not meant)
+        q
+        for q in EVERY.values()
+        if word == q.name or (word.lower() == q.label and not meant)
     ]
-    entries = [*_keys(word), *map(_result, named), *meant]
+    keys = _keys(word, texts=not report)
+    entries = [*report, *keys, *map(_result, named), *meant]
     offers = [] if entries else list(_offers(word))
-    entries += _reports(word, everything=bool(offers), options=not (entries or offers))
+    if not report:
+        alone = not (entries or offers)
+        entries += _reports(word, everything=bool(offers), options=alone)
     if not (entries or offers or word == PLUGINS):
         instead = hint(
             word, _known(), "`rps explain podium` and the like list a section's keys"
         )
         raise UsageError(f"explain {word}: there is no such name; {instead}")
     parts = [part for entry in entries for part in entry.parts]
-    if offers:
-        heads = ("group", "name", "package", "is")
-        rows = [
-            (f"rpscli.{o.kind}", o.name, o.package, o.fault or o.meaning) for o in offers
-        ]
-        parts.append(Table.of_texts(heads, rows, words=len(heads)))
-    elif word == PLUGINS:
-        parts.append(
-            "no installed package adds anything; help(rpscli.plugins) explains how to"
-            " write one"
-        )
+    parts += _listing(offers, everything=word == PLUGINS)
     entries += [Entry("plugins", offer._asdict()) for offer in offers]
     said = {
         kind: [entry.said for entry in entries if entry.kind == kind] for kind in KINDS
     }
     terminal.result({**heading("explain"), "word": word, **said}, parts)
+
+
+def _listing(offers: list[Offer], *, everything: bool) -> Iterator[Part]:
+    """What other packages add, as a table; words if that is asked for and there is none."""
+    heads = ("group", "name", "package", "is")
+    rows = [(f"rpscli.{o.kind}", o.name, o.package, o.fault or o.meaning) for o in offers]
+    if rows:
+        yield Table.of_texts(heads, rows, words=len(heads))
+    elif everything:
+        yield (
+            "no installed package adds anything; help(rpscli.plugins) explains how to"
+            " write one"
+        )
 
 
 def glossary() -> list[tuple[str, str]]:
@@ -117,7 +130,34 @@ def glossary() -> list[tuple[str, str]]:
 
 
 def _names(entry: str) -> list[str]:
-    return [part.strip().lower() for part in (entry, *re.split(r"[,()]", entry))]
+    parts = (entry, *re.split(r"[,()]", entry))
+    return [_as_printed(part) for part in parts]
+
+
+def _as_printed(word: str) -> str:
+    """A word as tables or as files have it: outcomes have spaces or strokes, and what
+    follows a colon explains them.
+    """
+    return " ".join(word.partition(":")[0].replace("_", " ").lower().split())
+
+
+def _everything() -> tuple[dict[str, Any], list[Part]]:
+    """The names that have a meaning, kind by kind."""
+    from rpscli.report.study.registry import REPORTS
+
+    lists: dict[str, Iterable[str]] = {
+        "sections of a case": dict.fromkeys(
+            key.key.partition(".")[0] for key in _formats() if "." in key.key
+        ),
+        "results": EVERY,
+        "reports of studies": REPORTS,
+        "words": [name for name, _ in glossary()],
+    }
+    said = {kind: sorted(names, key=str.lower) for kind, names in lists.items()}
+    parts: list[Part] = ["rps explain NAME, with one of these names:"]
+    for kind, names in said.items():
+        parts += [Heading(kind), ", ".join(names)]
+    return {**heading("explain"), "word": None, "names": said}, parts
 
 
 def _result(quantity: ResultQuantity) -> Entry:
@@ -147,15 +187,15 @@ def _formats() -> list[KeyReference]:
     return list({key.key: key for key in reversed(keys)}.values())[::-1]
 
 
-def _keys(word: str) -> Iterator[Entry]:
-    """Keys that are called so: in full, else by their end, else by their symbol."""
+def _keys(word: str, *, texts: bool) -> Iterator[Entry]:
+    """Keys that are called so: in full, else by their end, else by their symbol, or by
+    the first words of their meaning where texts count.
+    """
     hits: list[KeyReference] = []
     for called in (
         lambda key: key.key == word,
         lambda key: key.key.endswith(f".{word}"),
-        lambda key: (
-            word in re.split(r"[\s=/,()]+", key.symbol or key.meaning.split(",")[0])
-        ),
+        lambda key: texts and word in _first_words(key),
     ):
         hits = hits or [key for key in _formats() if called(key)]
     alike: dict[KeyReference, list[KeyReference]] = {}
@@ -170,6 +210,11 @@ def _keys(word: str) -> Iterator[Entry]:
             "keys", _said(key), (Heading(key.key), *likewise, _lines(key), *drawing)
         )
         yield from (Entry("keys", _said(other)) for other in others)
+
+
+def _first_words(key: KeyReference) -> list[str]:
+    """Those of its symbol, or of its meaning up to a comma."""
+    return re.split(r"[\s=/,()]+", key.symbol or key.meaning.split(",")[0])
 
 
 def _said(key: KeyReference) -> dict[str, Any]:

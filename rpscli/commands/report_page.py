@@ -45,6 +45,7 @@ from rpscli.report.page import Block, Notice, Picture, Section, pictures
 from rpscli.report.study.report import labels
 from rpscli.report.study.statistics import (
     cut,
+    note_of_directions,
     of_first_system,
     summary_tables,
     verdict_table,
@@ -526,6 +527,8 @@ def _in_short(run: StudyResult) -> Iterator[Block]:
         yield verdicts_in_short(run.judgements, " of a system at an intensity")
         if run.judgements:
             yield from cut([verdict_table(run.summary, run.judgements)])
+        if note := note_of_directions(run.layout):
+            yield Notice(note)
 
 
 def motions_of(study: Study) -> tuple[list[GroundMotion], list[str]]:

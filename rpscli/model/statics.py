@@ -31,6 +31,11 @@ class Return(NamedTuple):
     """Largest friction against which it comes back, a force at the cap beam [N]."""
     friction: float  # Largest friction on the way [N]
     recentres: bool  # True if it comes back to full contact
+    dead_band: float | None = 0.0
+    """|u_b| within which friction holds it at rest; None if that is everywhere [m]."""
+    rest: float | None = None
+    """u_b at which it stays after its last swing, outwards positive as it was let go, of
+    a rigid building on ends without a flat part and without other losses [m]."""
 
 
 class StoreyStrength(NamedTuple):
@@ -121,7 +126,7 @@ def largest_recentring_friction(structure: PodiumStructure, rotation: float) -> 
     """The largest friction from which the structure still comes
     back from a rotation [N].
     """
-    x = np.linspace(rotation / POINTS, rotation, POINTS)
+    x = np.linspace(0.0, rotation, POINTS + 1)
     return float(np.min(restoring_force(structure, x, rotation)))
 
 
@@ -133,9 +138,50 @@ def recentres(structure: PodiumStructure, rotation: float) -> bool:
     )
 
 
+def dead_band(structure: PodiumStructure) -> float | None:
+    """Largest |u_b| about upright up to which friction holds the storey at rest: F_d/K of
+    ends that restore by K; None if it holds it everywhere [m].
+    """
+    x = np.linspace(0.0, structure.critical_rotation, 20 * POINTS)
+    spare = restoring_force(structure, x) - friction_force(structure, x)
+    if not (spare > 0.0).any():
+        return None
+    end = int(np.argmax(spare > 0.0))
+    if end == 0:
+        return 0.0
+    inside = spare[end - 1] / (spare[end - 1] - spare[end])
+    held = x[end - 1] + inside * (x[end] - x[end - 1])
+    return float(structure.path(np.array([held]))[1][0])
+
+
+def rest_after_swings(structure: PodiumStructure, rotation: float) -> float:
+    """u_b at which a rigid storey on ends without a flat part stays after it was let go
+    from rest, by energy: friction alone takes some [m].
+    """
+    x = np.linspace(0.0, rotation, 20 * POINTS)
+    u = structure.path(x)[1]
+    F = restoring_force(structure, x, rotation)
+    f = friction_force(structure, x)
+    stored, taken = (
+        np.append(0.0, np.cumsum(0.5 * (y[1:] + y[:-1]) * np.diff(u))) for y in (F, f)
+    )
+    left = stored - taken  # least where friction is the restoring force
+    side = 1.0
+    at = float(u[-1])
+    while np.interp(at, u, F) > np.interp(at, u, f):
+        spare = float(np.interp(at, u, left))
+        if spare <= 0.0:  # it does not reach the upright position
+            falling = slice(0, int(np.argmin(left)) + 1)
+            return side * float(np.interp(-spare, -left[falling], u[falling]))
+        side = -side
+        at = float(np.interp(spare, stored + taken, u))
+    return side * at
+
+
 def returns(structure: PodiumStructure) -> list[Return]:
     """Returns of the podium from some rotations; empty without friction."""
     rotations = [part * structure.critical_rotation for part in PARTS]
+    spherical = structure.bearing.is_spherical
     return [
         Return(
             x,
@@ -143,6 +189,8 @@ def returns(structure: PodiumStructure) -> list[Return]:
             largest_recentring_friction(structure, x),
             friction,
             recentres(structure, x),
+            dead_band(structure),
+            rest_after_swings(structure, x) if spherical else None,
         )
         for x in rotations
         if (friction := float(np.max(friction_force(structure, np.linspace(0.0, x, 50)))))

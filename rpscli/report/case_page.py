@@ -301,7 +301,8 @@ def history_short(
         yield limits_table(verdicts)
     yield timehistory.restitution_text(result.structure)
     yield from map(Notice, timehistory.neighbours_texts(result, beside))
-    yield from filter(None, [timehistory.note_of_direction(result)])
+    told = timehistory.passes_text(result), timehistory.note_of_direction(result)
+    yield from filter(None, told)
 
 
 def ground_section(

@@ -49,6 +49,9 @@ OUTCOMES = {
 
 Row = tuple[str, str, str, str]
 
+DASHPOTS = 0.05
+"""Part of the base shear that dashpots of storeys add, from which it is told."""
+
 
 def timehistory_tables(
     result: TimeHistoryResult,
@@ -271,6 +274,7 @@ def _of_building(result: TimeHistoryResult) -> Iterator[Row]:
     yield from _rows(result, "max_base_shear", normalised=ratio, fixed=fixed.base_shear)
     if result.both_components:
         yield "  in x, in y", _ways(result, "max_base_shear"), "", ""
+    yield from _with_dashpots(result)
     yield from _rows(result, "uplift_shear_ratio", "fixed_base_ratio")
     largest = float(np.max(fixed.floor_accelerations))
     yield from _rows(result, "max_floor_acceleration", fixed=largest)
@@ -290,6 +294,16 @@ def _of_building(result: TimeHistoryResult) -> Iterator[Row]:
         yield from _rows(result, "ductility", "plastic_drift")
         of_height = "" if residual is None else f"{shown(residual)} of the height"
         yield from _rows(result, "residual_drift", normalised=of_height)
+
+
+def _with_dashpots(result: TimeHistoryResult) -> Iterator[Row]:
+    """What springs and dashpots carry together, where these carry a part that counts."""
+    both = result.base_shear_with_dashpots
+    springs = result.max_base_shear
+    if both is None or not both > (1.0 + DASHPOTS) * springs:
+        return
+    words = f"{percent(both - springs, springs)} more than springs"
+    yield "  with dashpots of storeys", measured(both, "N"), words, ""
 
 
 def _of_contacts(result: TimeHistoryResult) -> Iterator[Row]:
@@ -407,7 +421,8 @@ def passes_text(result: TimeHistoryResult) -> str | None:
         f"{result.passes:.0f} passes near upright, however wide; {lost:.0f} of them lose"
         " like an impact (l > 0.5); contact time"
         f" {1e3 * result.structure.impact_law.contact_time:g} ms assumed: it decides how"
-        f" the motion dies out, but hardly its maxima; {accumulated(result)}{ROUND}"
+        " the motion dies out, and moves medians of largest rotations by up to 9 %"
+        f" (0.5 to 4 ms); {accumulated(result)}{ROUND}"
     )
 
 

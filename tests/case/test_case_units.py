@@ -11,7 +11,16 @@ from rpscli.case.schema.fields import ValueRange
 from rpscli.case.schema.scale_to import scale_to_of
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.tools.comparison.observed import comparable
-from rpscli.units import FOOT, INCH, KINDS, POUND, POUND_FORCE, si_factor, si_value
+from rpscli.units import (
+    FOOT,
+    INCH,
+    KINDS,
+    POUND,
+    POUND_FORCE,
+    computed_remedy,
+    si_factor,
+    si_value,
+)
 
 # A factor of a unit is exact but for the rounding of one product.
 ROUNDING = 1e-14
@@ -155,3 +164,21 @@ def test_values_of_observed_systems():
         "tower A",
         "0.5",
     )
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "said"),
+    [
+        ("8.5 deg", "1", "; an angle? tan(8.5 deg) = 0.149"),
+        ("150 mrad", "1", "; an angle? tan(150 mrad) = 0.151"),
+        ("120 deg", "1", ""),
+        ("2.5 Hz", "s", "; a frequency? 1/(2.5 Hz) = 0.4 s"),
+        ("0 Hz", "s", ""),
+        ("500 kN", "kg", "; a weight? 500 kN/g = 50.99 t"),
+        ("3 m", "kg", ""),
+        ("3 parsec", "s", ""),
+        ("much", "kg", ""),
+    ],
+)
+def test_what_another_kind_of_value_may_have_meant(text, unit, said):
+    assert computed_remedy(text, unit) == said

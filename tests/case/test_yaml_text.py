@@ -48,6 +48,7 @@ BOMB = [f"l{i}: &l{i} [{', '.join([f'*l{i - 1}'] * 9)}]" for i in range(1, 9)]
         ("- 1\n", ["c.yaml:1:1", "[1]", "not a mapping"]),
         ("text\n", ["c.yaml:1:1", "'text'", "not a mapping"]),
         ("a: 1\n\tb: 2\n", ["c.yaml:2:1", "tab", "spaces"]),
+        ("a: 1\nb:\t2\n", ["c.yaml:2:3", "a tab behind the text here; write a blank"]),
         ("a:\n  b: 1\n c: 2\n", ["c.yaml:3:2", "indentation"]),
         ("a: 1\n b: 2\n", ["c.yaml:2:3", "indent"]),
         ("a: x: y\n", ["c.yaml:1:5", "quotes"]),

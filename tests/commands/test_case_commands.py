@@ -1,6 +1,7 @@
 """check, modal and pushover on every case that is shipped, and their numbers."""
 
 import importlib.util
+import re
 from pathlib import Path
 
 import numpy as np
@@ -302,3 +303,32 @@ def test_tables_of_the_pushover(rps):
 def test_values_of_the_paper_are_an_option(rps):
     assert "first order" not in rps("modal", "small.yaml").stdout
     assert "first order" in rps("modal", "small.yaml", "--first-order").stdout
+
+
+SPHERICAL = (
+    "podium.bearing.slenderness=0",
+    "podium.bearing.curvature_ratio=0.6",
+    "podium.bearing.wedge_slenderness=0.3",
+)
+
+
+def check_with_friction(rps, force):
+    """The printed words of spherical ends with a damper, in one line."""
+    case = *SPHERICAL, f"podium.devices=[{{kind: friction, force: {force}}}]"
+    sets = [word for each in case for word in ("--set", each)]
+    return " ".join(rps("check", "small.yaml", *sets).stdout.split())
+
+
+def test_check_says_where_friction_holds_ends_that_restore(rps):
+    text = check_with_friction(rps, "20 kN")
+    assert "at most: the largest friction against which it would come back" in text
+    assert "friction holds it at rest within " in text
+    assert "where a rigid building stays after its last swing" in text
+    # a quarter, a half and three quarters of the critical rotation, to some millimetres
+    assert len(re.findall(r" 20\.00 0 to [\d.]+ mm", text)) == 3
+
+
+def test_check_says_that_friction_holds_it_everywhere(rps):
+    text = check_with_friction(rps, "20 MN")
+    assert "friction holds it at rest wherever it stands still" in text
+    assert text.count("no, it stays") == 3

@@ -110,6 +110,9 @@ def test_a_case_and_a_study_are_told_apart(rps):
         ),
         ("uplifts and comes back", ["survived", "uplift, and no overturning"]),
         ("met, not shown", ["too few to exclude"]),
+        ("stays tilted", ["stays_tilted", "friction holds it tilted at the end"]),
+        ("survived: uplifts and comes back", ["uplift, and no overturning"]),
+        ("Base shear", ["base shear, V_b", "storey shear of the lowest storey"]),
         ("base shear over uplift with devices", ["uplift_shear_ratio, a result"]),
         ("podium.column", ["edge_length: square: L of the line"]),
         ("law", ["flexible, rigid, value", "default", "section 4"]),
@@ -119,6 +122,28 @@ def test_what_a_word_means(rps, word, said):
     result = rps("explain", word)
     for text in said:
         assert text in " ".join(result.stdout.split()) or text in result.stdout
+
+
+def test_without_a_word_everything_is_listed(rps, rps_json):
+    shown = " ".join(rps("explain").stdout.split())
+    names = rps_json("explain")["names"]
+    assert [*names] == ["sections of a case", "results", "reports of studies", "words"]
+    for kind, name in zip(
+        names, ("podium", "max_base_shear", "risk", "cap beam"), strict=True
+    ):
+        assert any(each.startswith(name) for each in names[kind])
+        assert name in shown
+
+
+@pytest.mark.parametrize(
+    "report", ["demand", "risk", "ida", "fragility", "table", "scatter"]
+)
+def test_a_report_stands_before_texts_that_contain_its_name(rps, report):
+    assert (
+        rps("explain", report)
+        .stdout.lstrip()
+        .startswith(f"{report}, a report of studies")
+    )
 
 
 def test_meanings_are_one_line(rps_json):

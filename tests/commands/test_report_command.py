@@ -1,6 +1,7 @@
 """`rps report`: pages of cases, of studies, and of folders of results."""
 
 import json
+import math
 import re
 from html import unescape
 from pathlib import Path
@@ -195,6 +196,7 @@ def test_a_study_is_computed_once(rps, study, rps_json):
         "synthetic:?pga=0.5g",
         "at most 0.5 in every record",
         "rps sweep",
+        "one horizontal direction at a time, not conservative",
     ):
         assert part in text
     # The folder of the study holds points that `rps sweep` goes on with, and no files of it.
@@ -426,3 +428,18 @@ def test_a_design_has_a_page(rps):
     rps("design", "design.yaml", "--figures", "none", *SOFT, exit_code=result.exit_code)
     rps("report", "results/design/design", "-o", "again.html", exit_code=result.exit_code)
     assert "A small design" in text_of("again.html")
+
+
+def test_a_page_of_both_components_has_what_they_assume(workplace, page):
+    """As the terminal has it."""
+    time = [0.01 * i for i in range(101)]
+    for name, size in (("x", 3.0), ("y", 2.0)):
+        rows = (f"{t:.2f},{size * math.sin(8.0 * t):.6f}" for t in time)
+        text = "\n".join(["time [s],acceleration [m/s2]", *rows])
+        (workplace / f"{name}.csv").write_text(text, encoding="utf-8")
+    page(
+        "small.yaml",
+        "--record",
+        "x.csv?second=y.csv&both",
+        shows=["columns are taken as round", "near upright"],
+    )

@@ -7,11 +7,20 @@ import numpy as np
 import pytest
 from oracles.devices import Equipment
 from oracles.storey_lagrangian import Contact, StoreyLagrangian
-from paper_structures import FLAT, known, oracle_devices, oracle_system, podium
+from paper_structures import (
+    FLAT,
+    known,
+    needs_compiled_kernels,
+    oracle_devices,
+    oracle_system,
+    podium,
+)
 
 from rpscli.analyses.modal import linearised_matrices, modal
 from rpscli.analyses.pushover import pushover
-from rpscli.model.bearing import uplifted_state
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.analyses.timehistory import time_history
+from rpscli.model.bearing import Bearing, uplifted_state
 from rpscli.model.devices import (
     FrictionDamper,
     RollingResistance,
@@ -19,7 +28,16 @@ from rpscli.model.devices import (
     Tendon,
     ViscousDamper,
 )
-from rpscli.model.statics import device_consequences, returns, secant_period, uplift_force
+from rpscli.model.podium import PodiumStructure
+from rpscli.model.statics import (
+    dead_band,
+    device_consequences,
+    restoring_force,
+    returns,
+    secant_period,
+    uplift_force,
+)
+from rpscli.records.ground_motion import GroundMotion
 
 pytestmark = [
     pytest.mark.evidence("devices", "exact"),
@@ -206,3 +224,47 @@ def test_the_secant_period_of_flat_ends(ratio):
     assert secant_period(held, rotation) == pytest.approx(
         wanted / math.sqrt(2.0), rel=1e-3
     )
+
+
+def on_spheres(friction):
+    """A rigid storey on ends of 2 m radius."""
+    bearing = Bearing(1.5, 0.0, 0.3, 2.0 / 3.0, 4.0 / 3.0)
+    base = PodiumStructure(bearing, 2e4, 2e5, None, columns=4)
+    return replace(base, devices=(FrictionDamper(friction * base.weight),))
+
+
+@pytest.mark.parametrize("friction", [0.002, 0.01, 0.03])
+def test_the_dead_band_of_ends_that_restore(friction):
+    """F is K u_b but for some cosines as long as columns roll on arcs."""
+    structure = on_spheres(friction)
+    x = np.array([0.01])
+    stiffness = float(restoring_force(structure, x)[0] / structure.path(x)[1][0])
+    band = structure.devices[0].force / stiffness
+    for found in returns(structure):
+        assert found.dead_band == pytest.approx(band, rel=5e-3)
+        assert found.largest_friction == 0.0
+        assert not found.recentres
+
+
+@needs_compiled_kernels
+@pytest.mark.parametrize("friction", [0.002, 0.01, 0.03])
+def test_the_rest_after_the_last_swing_is_that_of_a_history(friction):
+    structure = on_spheres(friction)
+    for found in returns(structure)[:2]:
+        settings = TimeHistorySettings(
+            free_vibration=200.0, initial_rotation=found.rotation
+        )
+        still = GroundMotion(np.zeros(2), 0.01, "still", "still", "")
+        history = time_history(structure, still, settings, with_fixed_base=False)
+        angle = np.abs(history.trace.rotation[-1:])
+        rest = float(structure.path(angle)[1][0])
+        assert abs(found.rest) == pytest.approx(rest, rel=1e-3, abs=1e-5)
+        assert abs(found.rest) <= found.dead_band
+
+
+def test_friction_that_holds_everywhere_has_no_band():
+    structure = on_spheres(0.5)
+    assert dead_band(structure) is None
+    for found in returns(structure):
+        assert found.rest == pytest.approx(found.displacement)
+    assert dead_band(equipped(FLAT, FrictionDamper(1e3))) == 0.0

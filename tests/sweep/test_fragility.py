@@ -324,6 +324,7 @@ def test_a_file_has_its_place_in_a_spectrum_and_systems_share_the_axes(study_of)
     missing = list(records_without_period(layout, SpectrumOptions()))
     assert len(missing) == 1
     assert "mine.txt is not a pulse with a period" in missing[0]
+    assert "pulses: {mine.txt: {period: 0.8, amplitude: 3.9}}" in missing[0]
     pulse = PulseSection(period=0.8, amplitude=1.0)
     options = SpectrumOptions(pulses={"mine.txt": pulse}, series=(RHO,))
     assert not list(records_without_period(layout, options))

@@ -228,8 +228,12 @@ def shows_contributions(figure, written, parts):
         drawn = [patch for patch in steps if patch.get_label()]
         beyond = [patch for patch in steps if not patch.get_label()]
         told = [text.get_text() for text in axes.texts]
-        (grey,) = [patch for patch in axes.patches if isinstance(patch, Rectangle)]
-        assert grey.get_x() == 2.7
+        grey = [patch for patch in axes.patches if isinstance(patch, Rectangle)]
+        *below, above = sorted(grey, key=Rectangle.get_x)
+        assert above.get_x() == 2.7
+        assert len(below) == (axes.get_xlim()[0] < 0.3)
+        for patch in below:
+            same(patch.get_x() + patch.get_width(), 0.3)
         for system, patch, last, words in zip(systems, drawn, beyond, told, strict=True):
             keys = ("limit [-]", *(key for key in system if key.startswith("podium")))
             of = [part for part in parts if all(part[key] == system[key] for key in keys)]
@@ -302,8 +306,13 @@ def test_rates_margins_and_dispersions_are_those_of_fema_p695(
         assert row["annual_rate_of_hazard_84"] == pytest.approx(3.0 * row["annual_rate"])
         tail = float(rates_above(hazard, row["median"], total, np.array([2.7]))[0])
         assert row["share_beyond_computed"] == pytest.approx(tail / row["annual_rate"])
+        above = float(rates_above(hazard, row["median"], total, np.array([0.3]))[0])
+        below = 1.0 - above / row["annual_rate"]
+        assert row["share_below_computed"] == pytest.approx(below, abs=1e-12)
         tail = float(rates_above(hazard, row["median"], total, np.array([4.0]))[0])
         assert row["share_beyond_hazard"] == pytest.approx(tail / row["annual_rate"])
+    below = [row["share_below_computed"] for row in known]
+    assert max(below) > 0.05
     are_margins(known, [m for m in found["at"] if m["CMR"] is not None])
     assert "modelling 0.4" in found["remark"]
     parts = csv_rows("risk_contributions.csv", "out")
@@ -313,15 +322,17 @@ def test_rates_margins_and_dispersions_are_those_of_fema_p695(
     assert (workplace / "out" / "risk.png").exists()
     shows_contributions(load_study("study.yaml").run("out").draw("risk"), written, parts)
     monkeypatch.setenv("COLUMNS", "400")
-    shown = sweep("study.yaml", "-o", "out").stdout
+    ran = sweep("study.yaml", "-o", "out")
     for words in (
         "beta total",
         "rate of hazard 84 %",
         "ACMR",
         "MCE",
         "95 % bands of the choice",
+        f"{100.0 * max(below):.0f} % of the annual rate",
+        "come from below the weakest intensity computed, by the fitted curve",
     ):
-        assert words in " ".join(shown.split())
+        assert words in " ".join((ran.stdout + ran.stderr).split())
     refused = sweep("study.yaml", "-o", "out", study=text.replace("60 cm/s", "60 cm"))
     assert "at: is a length, but must be a velocity" in refused.stderr
 

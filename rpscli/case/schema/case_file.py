@@ -172,7 +172,10 @@ class BearingSection(Section):
 
     semi_diagonal: Length | None = None
     """R = sqrt(H^2 + B^2), half height and half width of the flat part"""
-    slenderness: Annotated[float | None, Quantity(at_least=0)] = None
+    slenderness: Annotated[
+        float | None,
+        Quantity(at_least=0, remedy="it is B/H, as 0.15, or 0 for spherical ends"),
+    ] = None
     """tan(alpha) = B/H; 0 = spherical ends, which roll from rest"""
     wedge_slenderness: PositiveRatio | None = None
     """tan(alpha') = B'/H; ignored for flat ends"""

@@ -31,7 +31,7 @@ from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from rpscli.errors import LARGEST, SMALLEST, PluginError, hint, is_number, listed, nearest
 from rpscli.registry import Registry
-from rpscli.units import KINDS, Written, si_value
+from rpscli.units import KINDS, Written, computed_remedy, si_value
 
 
 class Section(BaseModel):
@@ -158,12 +158,12 @@ class Quantity(Mark):
             share = ", as 0.05 for 5 %" * ("%" in text)
             refuse(
                 f"is text; it {self._not_a_number}, without unit and without"
-                f" quotes{share}"
+                f" quotes{share}{computed_remedy(text, self.unit)}"
             )
         try:
             return si_value(text, self.unit)
         except ValueError as error:
-            refuse(str(error))
+            refuse(f"{error}{computed_remedy(text, self.unit)}")
 
     def __get_pydantic_core_schema__(self, *_: object) -> CoreSchema:
         """The check, for pydantic, of one value or of a list."""

@@ -72,10 +72,18 @@ def syntax_error(error: yaml.YAMLError, text: str, name: str) -> str:
         return (
             f"{place}: this is not YAML: {problem}; compare with what `rps init` writes"
         )
+    if mark and "\\t" in problem and _behind_text(text, mark):
+        remedy = "there is a tab behind the text here; write a blank in its place"
     if start and any(word in (error.context or "") for word in ("flow", "quoted")):
         # The bracket or the quotation mark that is not closed.
         remedy += f"; it opens at line {start.line + 1}, column {start.column + 1}"
     return f"{place}: {remedy} (YAML: {problem})"
+
+
+def _behind_text(text: str, mark: yaml.Mark) -> bool:
+    """True where a line has more than blanks before a place."""
+    lines = text.splitlines()
+    return mark.line < len(lines) and bool(lines[mark.line][: mark.column].strip())
 
 
 DEEPEST = 40

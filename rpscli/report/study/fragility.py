@@ -207,6 +207,7 @@ class Fragility:
     place: int  # of the group
     total: float  # beta with what is uncertain besides the records
     largest: float  # intensity that was computed
+    smallest: float  # likewise
 
 
 @dataclass(frozen=True, eq=False)
@@ -322,11 +323,11 @@ def _fragility(
     counts = len(kept), int(beyond.sum()), int(table.overturned[kept].sum())
     total = float(options.dispersion.total(fit.beta))
     largest = float(intensity.max(initial=0.0))
+    ends = largest, float(intensity.min(initial=largest))
     seen = binned(table, kept, intensity, beyond)
     failed = len(group.every) - len(kept)
-    return Fragility(
-        group.values, limit, fit, grid, seen, *counts, failed, place, total, largest
-    )
+    known = (fit, grid, seen, *counts, failed, place, total)
+    return Fragility(group.values, limit, *known, *ends)
 
 
 def binned(
@@ -531,7 +532,8 @@ def _draw_curves(axes: style.Axes, curves: list[Fragility], report: Fragilities)
             axes.plot(grid, total, ":", color=look["color"], lw=1.0)
     axes.set_ylim(-0.02, 1.02)
     axes.set_xlim(0.0, max(curve.grid[-1] for curve in curves))
-    beyond_computed(axes, max(curve.largest for curve in curves), axes.get_xlim()[1])
+    last = max(curve.largest for curve in curves)
+    shade_not_computed(axes, last, axes.get_xlim()[1])
 
 
 def _remark_on_bands(report: Fragilities, groups: Iterable[list[Fragility]]) -> str:
@@ -547,10 +549,10 @@ def _remark_on_bands(report: Fragilities, groups: Iterable[list[Fragility]]) -> 
 BEYOND_COMPUTED = "grey: beyond the largest computed"
 
 
-def beyond_computed(axes: style.Axes, largest: float, end: float) -> None:
-    """Shade what is beyond the largest intensity that was computed."""
-    if largest < end:
-        axes.axvspan(largest, end, color=style.GREY, alpha=0.15, lw=0, zorder=0)
+def shade_not_computed(axes: style.Axes, start: float, end: float) -> None:
+    """Shade intensities at which nothing was computed, if there are any between both."""
+    if start < end:
+        axes.axvspan(start, end, color=style.GREY, alpha=0.15, lw=0, zorder=0)
 
 
 def measure_name(intensity: Intensity) -> str:

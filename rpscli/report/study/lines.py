@@ -33,7 +33,7 @@ from rpscli.report.study.report import (
     reached,
     symbol,
 )
-from rpscli.report.table import LARGE_UNITS, Column
+from rpscli.report.table import Column
 from rpscli.sweep.evaluation import KNOWN, SCALARS, quantity
 from rpscli.sweep.statistics.fractiles import THREE, demand, fractiles
 from rpscli.sweep.statistics.grouping import (
@@ -196,8 +196,8 @@ def _figure(
         found.keys,
         chart.panels,
         partial(_draw, chart=chart),
-        x_label=_axis(x_name),
-        y_label=", ".join(filter(None, (_together(chart.results), statistic))),
+        x_label=_scale(x_name),
+        y_label=_together(chart.results).followed_by(statistic),
         note=panels.remarks(
             pooled,
             "hollow: means without those that overturned, counts in the CSV" * hollow,
@@ -267,8 +267,6 @@ def _draw(axes: style.Axes, panel: Panel, chart: Chart) -> None:
     paths = {tuple(plain(y) for y in line.y) for line in dashed}
     among = len(dashed) if len(paths) == 1 else 1
     count = max(len(series), len(results))
-    panels.large_axis(axes.xaxis, _unit(options.x))
-    panels.large_axis(axes.yaxis, _unit(results[0]))
     for line in panel.lines:
         place = series.index(line.values)
         if len(series) == 1:
@@ -307,22 +305,31 @@ def _staggered(place: int, among: int) -> str | tuple[int, tuple[int, int]]:
     return (2 * place, (2, 2 * min(among, 3) - 2)) if among > 1 else "--"
 
 
-def _together(names: Sequence[str]) -> str:
-    """Label of the axis of one or two kinds of result, or of values
-    that a legend tells apart.
+def _together(names: Sequence[str]) -> panels.Scale:
+    """The axis of one or two kinds of result, or of values that a
+    legend tells apart; of several units in SI.
     """
-    labels = dict.fromkeys(map(_axis, names))
-    if len(labels) <= MOST_NAMED:
-        return ", ".join(labels)
-    units = {*map(_unit, names)}
-    (unit,) = units if len(units) == 1 else ("SI units",)
-    return f"value [{LARGE_UNITS.get(unit, (unit,))[0]}]"
+    alike = len({*map(_unit, names)}) == 1
+    scales = dict.fromkeys(map(_scale if alike else _in_si, names))
+    if len(scales) <= MOST_NAMED:
+        first, *others = scales
+        return first.followed_by(*(each.label for each in others))
+    return panels.scale_of("value", _unit(names[0]) if alike else "SI units")
 
 
-def _axis(name: str) -> str:
-    """Label of an axis: that of the result, or the varied key with its unit."""
+def _scale(name: str) -> panels.Scale:
+    """The axis of a result, or of a varied key."""
+    if found := _quantity(name):
+        return panels.scale_of_result(found)
+    return panels.scale_of(symbol(name), unit_of(name))
+
+
+def _in_si(name: str) -> panels.Scale:
+    """The axis of a result in its SI unit, as it stands beside others."""
     found = _quantity(name)
-    return panels.large_label(found) if found else f"{symbol(name)} [{unit_of(name)}]"
+    return panels.Scale(
+        found.axis_label if found else f"{symbol(name)} [{unit_of(name)}]"
+    )
 
 
 def _quantity(name: str) -> ResultQuantity | None:
@@ -404,7 +411,8 @@ def ida(study: StoredPoints, options: IdaOptions) -> Found:
             panel.levels, panel.heights.tolist(), panel.fractiles.T.tolist(), strict=True
         )
     ]
-    figure = _ida_figure(found, shown, of, level_name)
+    level = panels.scale_of(name, unit_of(name))
+    figure = _ida_figure(found, shown, of, level)
     return Found({"": keyed(found.keys, heads, rows)}, figure, found.notes)
 
 
@@ -417,7 +425,7 @@ def _ida_of(group: Histories, demands: Array) -> Ida:
 
 
 def _ida_figure(
-    found: Grouping, shown: Sequence[Ida], of: ResultQuantity, level_name: str
+    found: Grouping, shown: Sequence[Ida], of: ResultQuantity, level: panels.Scale
 ) -> Callable[[str], style.Draw]:
     """One panel a group, as far to the right as what stood."""
     finite = np.concatenate([panel.curves[np.isfinite(panel.curves)] for panel in shown])
@@ -427,9 +435,9 @@ def _ida_figure(
     return panels.in_panels(
         found.keys,
         shown,
-        partial(_draw_ida, unit=of.unit, edge=edge),
-        x_label=panels.large_label(of),
-        y_label=level_name,
+        partial(_draw_ida, edge=edge),
+        x_label=panels.scale_of_result(of),
+        y_label=level,
         limits=lambda axes: axes.set(xlim=(0.0, 0.97 * edge), ylim=(0.0, top)),
         note=panels.noted(
             found,
@@ -442,10 +450,9 @@ def _ida_figure(
     )
 
 
-def _draw_ida(axes: style.Axes, panel: Ida, unit: str, edge: float) -> None:
+def _draw_ida(axes: style.Axes, panel: Ida, edge: float) -> None:
     """Single curves, and fractiles over them."""
     levels = np.concatenate([[0.0], panel.heights])
-    panels.large_axis(axes.xaxis, unit)
     # Evenly through all of them: more would only blacken the panel.
     for curve in panel.curves[:: max(1, len(panel.curves) // MOST_CURVES)]:
         line = _run_out(curve, levels, edge)

@@ -6,13 +6,13 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeVar
 
 from rpscli.analyses.result_quantities import ResultQuantity
 from rpscli.report.figures import style
 from rpscli.report.figures.look import FONT_SIZE, SMALL
 from rpscli.report.study.report import labels
-from rpscli.report.table import LARGE_UNITS, large
+from rpscli.report.table import large
 from rpscli.sweep.statistics.grouping import Grouping
 
 if TYPE_CHECKING:
@@ -91,8 +91,8 @@ class PanelFigure:
     panels: Sequence[Any]
     draw: Callable[[style.Axes, Any], None]
     in_row: int
-    x_label: str
-    y_label: str
+    x_label: str | Scale
+    y_label: str | Scale
     share: Literal["both", "x"] = "both"
     limits: Callable[[style.Axes], object] | None = None
     note: str = ""
@@ -121,6 +121,7 @@ class PanelFigure:
             axes.locator_params(
                 nbins=max(2, 5 - rows) if style.tight(figure) else MOST_TICKS
             )
+            self._ticks(axes)
             self.draw(axes, panel)
             # Without a height matplotlib would look for ticks under the title, at great
             # length.
@@ -147,23 +148,33 @@ class PanelFigure:
         height = 3.8 if rows == 1 and columns == 1 else 1.0 + each * rows
         return height, style.WIDTH if self._widest > 1 else 0.72 * style.WIDTH
 
+    def _ticks(self, axes: style.Axes) -> None:
+        """Numbers at the axes in the units of their labels."""
+        for axis, of in ((axes.xaxis, self.x_label), (axes.yaxis, self.y_label)):
+            if isinstance(of, Scale):
+                of.ticks(axis)
+
     def _label(self, figure: style.Figure, grid: NDArray[Any], shown: int) -> None:
         """Name the axes outside of the panels, and leave out places without a panel."""
         from matplotlib import rcParams
 
+        x, y = (
+            style.typeset(of.label if isinstance(of, Scale) else of)
+            for of in (self.x_label, self.y_label)
+        )
         rows, columns = grid.shape
         for place, axes in enumerate(grid.flat):
             if place >= shown:
                 axes.set_axis_off()
             elif place + columns >= shown:
-                axes.set_xlabel(style.typeset(self.x_label))
+                axes.set_xlabel(x)
                 axes.tick_params(labelbottom=True)
         if rows == 1:
-            grid[0, 0].set_ylabel(style.typeset(self.y_label))
+            grid[0, 0].set_ylabel(y)
             return
         letters = rcParams["font.size"]
         room = 0.7 * style.inches(figure)[1]
-        folded = style.folded(style.typeset(self.y_label), room, letters)
+        folded = style.folded(y, room, letters)
         figure.supylabel(folded, fontsize=letters, multialignment="center")
 
 
@@ -197,16 +208,37 @@ def log_ticks(axis: Axis) -> None:
     axis.set_minor_formatter("")
 
 
-def large_axis(axis: Axis, unit: str) -> None:
-    """Show values in SI in the unit in which people read them."""
-    if (factor := large(1.0, unit)[0]) != 1.0:
-        axis.set_major_formatter(lambda value, _: f"{(factor or 1.0) * value:g}")
+class Scale(NamedTuple):
+    """What an axis says of values in SI: a label, and ticks in the unit of the label."""
+
+    label: str
+    factor: float = 1.0  # from SI to the numbers at the ticks
+
+    def ticks(self, axis: Axis) -> None:
+        """Numbers in the unit of the label; words at ticks are set after it."""
+        if self.factor != 1.0:
+            axis.set_major_formatter(lambda value, _: f"{self.factor * value:g}")
+
+    def followed_by(self, *words: str) -> Scale:
+        """With further words in the label."""
+        return self._replace(label=", ".join(filter(None, (self.label, *words))))
 
 
-def large_label(quantity: ResultQuantity) -> str:
-    """The label of such an axis."""
-    unit = LARGE_UNITS.get(quantity.unit, (quantity.unit,))[0]
-    return quantity.in_unit(unit, quantity.symbol)
+def scale_of(words: str, unit: str) -> Scale:
+    """The axis of values in an SI unit, label and ticks in that in which
+    people read them; without a unit the label is the words.
+
+    >>> scale_of("force", "N"), scale_of("share", "")
+    (Scale(label='force [kN]', factor=0.001), Scale(label='share', factor=1.0))
+    """
+    factor, name = large(1.0, unit)
+    read = (name or unit).replace("/s2", "/s²")
+    return Scale(f"{words} [{read}]" if unit else words, factor or 1.0)
+
+
+def scale_of_result(quantity: ResultQuantity) -> Scale:
+    """The axis of a result."""
+    return scale_of(quantity.symbol or quantity.label, quantity.unit)
 
 
 def over(pooled: Sequence[str]) -> str:

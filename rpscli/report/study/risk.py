@@ -62,6 +62,7 @@ class Risk:
     beyond_computed: (
         float  # share of the rate beyond the largest intensity that was computed
     )
+    below_computed: float  # likewise, below the smallest one
     notes: tuple[str, ...]
 
     @property
@@ -178,6 +179,7 @@ def _quantities(
             for n, share in enumerate(hazard.fractiles)
         ),
         ("share_beyond_computed", "-", "from beyond computed", lambda r: r.beyond_computed),
+        ("share_below_computed", "-", "from below computed", lambda r: r.below_computed),
         ("share_beyond_hazard", "-", "from beyond hazard", lambda r: r.beyond_hazard),
         ("note", "-", None, lambda r: r.note),
     ]  # fmt: skip
@@ -218,8 +220,10 @@ def risk_of(fragility: Fragility, hazard: Hazard, options: RiskOptions) -> Risk:
     if not fit.fitted:
         none = np.full(BINS + 1, nan)
         lost = (nan,) * len(hazard.fractiles)
-        return Risk(fragility, nan, NOTHING, edges, none, nan, of_shares, lost, nan, ())
-    at = np.append(edges[:-1], max(fragility.largest, low))
+        known = (none, nan, of_shares, lost, nan, nan, ())
+        return Risk(fragility, nan, NOTHING, edges, *known)
+    ends = [max(fragility.smallest, low), max(fragility.largest, low)]
+    at = np.append(edges[:-1], ends)
     above = rates.rates_above(hazard, fit.median, total, at)
     medians, betas = fit.resampled
     sampled = [
@@ -233,11 +237,12 @@ def risk_of(fragility: Fragility, hazard: Hazard, options: RiskOptions) -> Risk:
         rate,
         band=band(np.array(sampled), options.confidence),
         edges=edges,
-        rates=-np.diff(np.append(above[:-1], 0.0)),
+        rates=-np.diff(np.append(above[:-2], 0.0)),
         of_records=annual_rate(hazard, fit.median, fit.beta),
         of_shares=of_shares,
         of_hazard=tuple(annual_rate(curve, fit.median, total) for curve in curves),
         beyond_computed=float(above[-1] / rate),
+        below_computed=float(1.0 - above[-2] / rate),
         notes=tuple(_notes(fragility, hazard, rate, of_shares)),
     )
 
@@ -278,9 +283,14 @@ def _report_notes(
     component that the hazard is of.
     """
     places = {
-        "beyond_computed": "the largest intensity computed, by the fitted curve; add intensities",
+        "beyond_computed": (
+            "beyond the largest intensity computed, by the fitted curve; add intensities"
+        ),
+        "below_computed": (
+            "below the weakest intensity computed, by the fitted curve; add weaker ones"
+        ),
         "beyond_hazard": (
-            "the last intensity of the hazard curve, which is continued with its last"
+            "beyond the last intensity of the hazard curve, which is continued with its last"
             " slope; extend the curve"
         ),
     }
@@ -294,7 +304,7 @@ def _report_notes(
                 f"({found.named(worst.fragility)}; above 5 % in {len(far)} of"
                 f" {len(risks)})"
             )
-            yield f"{share} of the annual rate {which} come from beyond {place}"
+            yield f"{share} of the annual rate {which} come from {place}"
     yield from component_notes(of, found.intensity.of)
     yield from found.told((each.fragility, "; ".join(each.notes)) for each in risks)
 
@@ -319,18 +329,23 @@ def risk_figure(
         f"P in {years:g} years, {style.percent(found.confidence)} bands of the choice of"
         " records",
         "dotted: all from beyond the hazard curve" * (high > last),
-        fragile.BEYOND_COMPUTED,
+        "grey: nothing computed",
         panels.over(found.systems.pooled),
     )
     y_label = "share of the annual rate [%]"
-    draw = partial(_draw_shares, found=found, years=years, high=high)
+    draw = partial(_draw_shares, found=found, years=years, shown=(low, high))
     return found.figure(groups, draw, y_label=y_label, note=note, limits=limit_axes)
 
 
 def _draw_shares(
-    axes: style.Axes, panel: list[Risk], found: Fragilities, years: float, high: float
+    axes: style.Axes,
+    panel: list[Risk],
+    found: Fragilities,
+    years: float,
+    shown: tuple[float, float],
 ) -> None:
-    """Shares of the rates of one panel, up to the highest intensity that is shown."""
+    """Shares of the rates of one panel, between the intensities that are shown."""
+    low, high = shown
     for row, each in enumerate(panel):
         _, name, place, count = found.placed(each.fragility)
         shade = panels.colour(place, count)
@@ -346,7 +361,9 @@ def _draw_shares(
                 0.02, 0.98 - _line(axes) * row, words, color=shade, transform=axes.transAxes,
                 va="top", fontsize=0.85 * style.small(),
             )  # fmt: skip
-    fragile.beyond_computed(axes, max(each.fragility.largest for each in panel), high)
+    ends = [(each.fragility.smallest, each.fragility.largest) for each in panel]
+    fragile.shade_not_computed(axes, max(end for _, end in ends), high)
+    fragile.shade_not_computed(axes, low, min(start for start, _ in ends))
 
 
 def _line(axes: style.Axes) -> float:

@@ -34,9 +34,9 @@ from rpscli.report.study.fragility import (
 from rpscli.report.study.report import (
     Found,
     Report,
-    axis_label,
     keyed,
     labels,
+    symbol,
     without_uplift,
 )
 from rpscli.sweep.evaluation import SCALARS
@@ -92,7 +92,7 @@ class Ordinate(NamedTuple):
     name: str
     values: Array
     unit: str
-    label: str
+    scale: panels.Scale
 
     @property
     def head(self) -> str:
@@ -105,21 +105,19 @@ def ordinate(table: Table, name: str) -> Ordinate:
     key, NaN where no number.
     """
     if (quantity := SCALARS["timehistory"].get(name)) is not None:
-        return Ordinate(
-            name, table.columns[name], quantity.unit, panels.large_label(quantity)
-        )
+        scale = panels.scale_of_result(quantity)
+        return Ordinate(name, table.columns[name], quantity.unit, scale)
     if name in MEASURES.names():
         found = table.intensity(name)
-        return Ordinate(
-            name, found.values, found.unit, f"{measure_name(found)} [{found.unit}]"
-        )
+        scale = panels.scale_of(measure_name(found), found.unit)
+        return Ordinate(name, found.values, found.unit, scale)
     values = np.full(len(table), np.nan)
     for group in groups(table.layout, [name]):
         value = in_si(group.values[0], unit_of(name))
         values[group.points] = value if is_number(value) else np.nan
-    return Ordinate(
-        name, values, unit_of(name), axis_label(*shown_keys(table.layout, [name]))
-    )
+    unit = unit_of(name)
+    words = symbol(*shown_keys(table.layout, [name]))
+    return Ordinate(name, values, unit, panels.scale_of(words, unit.strip("-")))
 
 
 class Cloud(NamedTuple):
@@ -232,8 +230,6 @@ def _figure(
     highest, top = (float(of.values[every].max(initial=0.0)) for of in both)
 
     def draw(axes: style.Axes, cloud: Cloud) -> None:
-        panels.large_axis(axes.xaxis, x.unit)
-        panels.large_axis(axes.yaxis, y.unit)
         for place, part in enumerate(cloud.shown.parts(series)):
             at = part.points
             look = MARKS | panels.look(place, most)
@@ -246,8 +242,8 @@ def _figure(
         found.keys,
         clouds,
         draw,
-        x_label=x.label,
-        y_label=y.label,
+        x_label=x.scale,
+        y_label=y.scale,
         limits=lambda axes: axes.set(xlim=(0.0, 1.04 * highest or 1.0), ylim=(0.0, None)),
         note=panels.noted(
             found,
@@ -484,7 +480,7 @@ def pulse_of(source: str, options: SpectrumOptions) -> PulseSection:
         raise CaseError(
             f"{source} is not a pulse with a period such as"
             " pulse:sine?amplitude=1g&period=1; give that of a file: pulses:"
-            " {{PurePath(source).name}: {period: 0.8, amplitude: 3.9}}"
+            f" {{{PurePath(source).name}: {{period: 0.8, amplitude: 3.9}}}}"
         )
     return PulseSection.model_construct(period=of.quantity("period", "time"))
 

@@ -271,8 +271,10 @@ def _draw_maxima(axes: style.Axes, each: Compared, found: Maxima) -> str:
     axes.set(xscale="log", yscale="log")
     for axis in (axes.xaxis, axes.yaxis):
         panels.log_ticks(axis)
-    name = QUANTITIES[each.quantity].axis_label
-    axes.set(xlabel=f"observed {name}", ylabel=f"computed {name}")
+    scale = panels.scale_of_result(QUANTITIES[each.quantity])
+    for axis in (axes.xaxis, axes.yaxis):
+        scale.ticks(axis)
+    axes.set(xlabel=f"observed {scale.label}", ylabel=f"computed {scale.label}")
     line = f"ratio {found.median:.2f} in the median, dispersion {found.dispersion:.2f}"
     return (
         f"{line}, n = {found.counted}"

@@ -22,7 +22,7 @@ from rpscli.report.limits import (
     requirement_text,
     verdict_texts,
 )
-from rpscli.report.study.panels import MOST_TICKS
+from rpscli.report.study import panels
 from rpscli.report.study.report import axis_label, key_columns, label, reached, symbol
 from rpscli.report.study.statistics import verdict_document
 from rpscli.report.table import Column, Part, Table, large, shown
@@ -33,6 +33,7 @@ from rpscli.tools.design.keys import Objective
 from rpscli.tools.design.search import ROBUST, Answer, Requirement
 
 if TYPE_CHECKING:
+    from matplotlib.axis import Axis
     from matplotlib.cm import ScalarMappable
 
 DIGITS = 4
@@ -328,16 +329,12 @@ def requirements_figure(answer: Answer, title: str, figure: style.Figure) -> Non
         if (off := np.nan_to_num(values, nan=0.0) > end).any():
             axes.plot(key[off], np.full(off.sum(), end), "^", ms=4.0, color=style.RED,
                       clip_on=False, label="off the scale, or overturned")  # fmt: skip
-        words = name
-        known = "overturned [1/year]" if name == RATE else "share of records"
-        if name in LIMITS:
-            words = LIMITS[name].label
-            known = LIMITS[name].axis_label
-        axes.set_ylabel(known)
+        words = LIMITS[name].label if name in LIMITS else name
+        _name_axis(axes.yaxis, _scale_of_requirement(name))
         axes.set_title(
             style.typeset(requirement_label(requirement).replace(name, words, 1))
         )
-    grid[-1].set_xlabel(axis_label(answer.task.keys[0]))
+    _name_axis(grid[-1].xaxis, _scale_of_key(answer.task.keys[0]))
     style.legend_below(figure, grid)
 
 
@@ -376,7 +373,7 @@ def _draw_region(
     of = {"passes": answer.passes[0], "fails": answer.valid & ~answer.passes[0]}
     of["no valid case"] = ~answer.valid
     look: dict[str, Any] = {"s": 18.0, "linewidths": 0.5, "clip_on": False}
-    axes.locator_params(nbins=MOST_TICKS)
+    axes.locator_params(nbins=panels.MOST_TICKS)
     for name, marker, colour in MARKS:
         at = answer.values[of[name]].T
         share = answer.passing_share[of[name]]
@@ -392,9 +389,26 @@ def _draw_region(
             axes.scatter(at[x], at[y], marker=marker, label=name, **look, **kind)
     if answer.best is not None:
         axes.plot(answer.values[answer.best, x], answer.values[answer.best, y], **BEST)
-    axes.set(
-        xlabel=axis_label(answer.task.keys[x]), ylabel=axis_label(answer.task.keys[y])
-    )
+    for axis, place in ((axes.xaxis, x), (axes.yaxis, y)):
+        _name_axis(axis, _scale_of_key(answer.task.keys[place]))
+
+
+def _scale_of_key(key: str) -> panels.Scale:
+    """The axis of an unknown."""
+    return panels.scale_of(symbol(key), unit_of(key).strip("-"))
+
+
+def _scale_of_requirement(name: str) -> panels.Scale:
+    """The axis of what is limited."""
+    if name in LIMITS:
+        return panels.scale_of_result(LIMITS[name])
+    return panels.Scale("overturned [1/year]" if name == RATE else "share of records")
+
+
+def _name_axis(axis: Axis, scale: panels.Scale) -> None:
+    """Label and ticks."""
+    scale.ticks(axis)
+    axis.set_label_text(scale.label)
 
 
 def _counts(answer: Answer) -> str:

@@ -82,23 +82,33 @@ def command(
             found = identified(given.case.structure, test, columns)
         except AnalysisError as error:
             raise AnalysisError(f"{data}: {error}") from None
-    estimates = found.estimates.items()
     document = {
         **heading("identify"),
         "case": case_heading(given),
         "test": test,
         "level": LEVEL,
+        **_of_fit(found),
+        "warnings": given.case.warnings,
+        "files": [],
+    }
+    tables = [Heading(given.case.title), *_tables(found), found.remarks]
+    fault = AnalysisError(f"{data}: {found.fault}") if found.fault else None
+    terminal.finish(document, tables, fault)
+
+
+def _of_fit(found: Identified) -> dict[str, Any]:
+    """Estimates and what was fitted, for the document."""
+    return {
         "estimates": [
-            {"name": n, "unit": u, **value._asdict()} for (n, u), value in estimates
+            {"name": name, "unit": unit, **value._asdict()}
+            for (name, unit), value in found.estimates.items()
         ],
         "misfit": found.misfit,
         "ensembles": found.ensembles,
         "residuals": found.residuals,
+        "sensor": found.sensor,
         "keys": found.keys,
-        "warnings": given.case.warnings,
-        "files": [],
     }
-    terminal.result(document, [Heading(given.case.title), *_tables(found), found.remarks])
 
 
 def _tables(found: Identified) -> Iterator[Part]:

@@ -30,6 +30,8 @@ class Identified(NamedTuple):
     remarks: str
     ensembles: bool = False  # true if means of many motions were fitted
     residuals: tuple[dict[str, float], ...] = ()  # of each swing
+    sensor: dict[str, float] | None = None  # what it adds to a rotation [rad, rad/s]
+    fault: str = ""  # why what was measured does not say more of this case
 
 
 def estimate(value: float, error: float, freedoms: int) -> Estimate:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -24,6 +24,10 @@ from rpscli.records.ground_motion import GroundMotion
 from rpscli.tools.identify.estimates import Estimate, Identified, estimate
 
 MOST_SWINGS = 12
+FEWEST_OF_DRIFT = 5
+"""Swings after the first one with which an offset and a slope of the sensor are fitted."""
+DRIFT = 0.1
+"""Largest offset, and change of it in all swings, over the amplitude of the first one."""
 SEEN = 20.0
 """Least amplitude of a swing that is used, over the noise of a sample."""
 NEAR_TOP = 0.7
@@ -43,9 +47,14 @@ AS_GOOD = 1.26
 two values that are fitted together and some twenty freedoms."""
 PARTING = 0.3
 """Scatter of an ensemble over the error of measurement from which it counts."""
+LACKING = 1.4
+"""Misfit that noise leaves in one of a hundred, with twenty freedoms."""
 WORST_MISFIT = 10.0
 """Of a model that rocks like the structure; what a model lacks
 leaves a few times the noise."""
+CLOSE = 5e-3
+"""Residuals over the last time and the largest amplitude that are a fit whatever the noise:
+slow noise of a sensor does not show between samples beside each other."""
 
 
 class Swing(NamedTuple):
@@ -61,8 +70,8 @@ class Swing(NamedTuple):
 
 @dataclass(frozen=True)
 class _Release:
-    """A structure that is let go; q is its rotation, a delay, its
-    loss or e, and its lever.
+    """A structure that is let go; q is its rotation, a delay, its loss or e, its lever,
+    and, where a drift is fitted, what the sensor adds: an offset and its rate.
     """
 
     structure: PodiumStructure
@@ -72,6 +81,15 @@ class _Release:
     side: float
     first: Swing  # begins with the release
     swings: list[Swing]  # all after it that are looked at
+    scale: float = 1.0  # of the errors, where residuals are larger than they
+    known: dict[bytes, tuple[Array, Array]] = field(default_factory=dict)
+    """Times and rotations of models that were followed: the delay and what a sensor
+    adds change none of them."""
+
+    @property
+    def drifts(self) -> bool:
+        """True if there are swings enough to tell a drift from what rocks."""
+        return len(self.swings) >= FEWEST_OF_DRIFT
 
     @property
     def measured(self) -> Array:
@@ -81,7 +99,7 @@ class _Release:
     @property
     def errors(self) -> Array:
         """Standard errors of what is measured."""
-        return np.array([value for swing in self.swings for value in swing[2:]])
+        return self.scale * np.array([v for swing in self.swings for v in swing[2:]])
 
     @property
     def place(self) -> int | None:
@@ -109,20 +127,31 @@ class _Release:
 
     def tops(self, q: Array, release: float = 1.0) -> Array:
         """Times and amplitudes of the swings; those that do not come have none."""
-        start = self.side * float(q[0]) * release
-        settings = TimeHistorySettings(free_vibration=self.span, initial_rotation=start)
-        still = GroundMotion(np.zeros(2), self.dt, "still", "still", "")
-        trace = time_history(
-            self.changed(q), still, settings, with_fixed_base=False
-        ).trace
-        found = swings_of(
-            trace.time, trace.rotation, self.noise, 0.25 * SEEN * self.noise
-        )[1:]
+        time, seen = self._followed(q, release)
+        if self.drifts:
+            seen = seen + q[-2] + q[-1] * (time + q[1])
+        found = swings_of(time, seen, self.noise, 0.25 * SEEN * self.noise)[1:]
         values = self.measured
         values[1::2] = 0.0
         for i, swing in enumerate(found[: len(self.swings)]):
             values[2 * i : 2 * i + 2] = swing.time + q[1], swing.amplitude
         return values
+
+    def _followed(self, q: Array, release: float) -> tuple[Array, Array]:
+        """Times and rotations of the model, each once."""
+        start = self.side * float(q[0]) * release
+        lever = q[3:4] if self.place is not None else q[:0]
+        name = np.array([start, q[2], *lever]).tobytes()
+        if name not in self.known:
+            settings = TimeHistorySettings(
+                free_vibration=self.span, initial_rotation=start
+            )
+            still = GroundMotion(np.zeros(2), self.dt, "still", "still", "")
+            trace = time_history(
+                self.changed(q), still, settings, with_fixed_base=False
+            ).trace
+            self.known[name] = trace.time, trace.rotation
+        return self.known[name]
 
 
 def rocking(structure: PodiumStructure, time: Array, rotation: Array) -> Identified:
@@ -139,16 +168,17 @@ def rocking(structure: PodiumStructure, time: Array, rotation: Array) -> Identif
         ) from None
     q, _, misfit = best.fit
     model = of.tops(q).reshape(-1, 2)
-    _refuse_bad_fit(q, starts.bounds, model, misfit)
+    _refuse_bad_fit(of, q, starts.bounds, model, misfit * best.scale)
 
     spread = np.sqrt(max(1.0, misfit) ** 2 * np.diag(best.covariance) + best.valley)
+    misfit *= best.scale
     # The scatter of an ensemble is known from so few motions.
     freedoms = ENSEMBLE - 2 if best.ensembles else 2 * len(of.swings) - len(q)
     found = [estimate(*each, freedoms) for each in zip(q, spread, strict=True)]
     ratios = sorted(of.changed(np.array([*q[:2], k, *q[3:]])).restitution for k in
                     np.clip(found[2], *starts.bounds[:, 2]))  # fmt: skip
     e = Estimate(of.changed(q).restitution, ratios[0], ratios[-1])
-    return _told(of, [e, *found[2:]], model, misfit, ensembles=best.ensembles)
+    return _told(of, q, [e, *found[2:]], model, misfit, ensembles=best.ensembles)
 
 
 def _release(structure: PodiumStructure, time: Array, rotation: Array) -> _Release:
@@ -205,6 +235,7 @@ class _BestFit(NamedTuple):
     covariance: Array
     valley: Array
     ensembles: bool
+    scale: float  # of the errors that the misfit is over
 
 
 class _Ensemble(NamedTuple):
@@ -243,6 +274,11 @@ def _best_fit(of: _Release, starts: _Starts) -> _BestFit:
     others = [fit.q - best.q for fit in fits if fit.misfit**2 <= worst]
     valley = np.sum(np.square(others), axis=0) / max(len(others) - 1, 1)
 
+    scale = best.misfit if best.misfit > LACKING else 1.0
+    if scale > 1.0:  # noise is larger than samples beside each other show
+        of = replace(of, scale=scale)
+        errors = of.errors
+        best = best._replace(misfit=1.0)
     covariance = (best.gain * errors**2) @ best.gain.T
     reach = 3.0 * max(1.0, best.misfit) * math.sqrt(covariance[0, 0]) / best.q[0]
     # A model that does not rock does not depend on its release either.
@@ -259,11 +295,17 @@ def _best_fit(of: _Release, starts: _Starts) -> _BestFit:
         # Swings that part ways do so together, which the gain adds up.
         gain = best.gain
         covariance = (gain * errors**2) @ gain.T + gain @ scatter @ gain.T
-    return _BestFit(best, covariance, valley, ensembles)
+    return _BestFit(best, covariance, valley, ensembles, scale)
 
 
 def _told(
-    of: _Release, found: list[Estimate], model: Array, misfit: float, *, ensembles: bool
+    of: _Release,
+    q: Array,
+    found: list[Estimate],
+    model: Array,
+    misfit: float,
+    *,
+    ensembles: bool,
 ) -> Identified:
     """In words and numbers: e, the loss or e again, and a lever."""
     estimates = {("restitution", "-"): found[0]}
@@ -282,11 +324,30 @@ def _told(
     names = (*Swing._fields, "model_time", "model_amplitude")
     rows = zip(of.swings, model.tolist(), strict=True)
     residuals = tuple(dict(zip(names, (*swing, *at), strict=True)) for swing, at in rows)
+    remarks = _remarks(of, q, misfit, ensembles=ensembles)
+    sensor = {"offset": float(q[-2]), "drift": float(q[-1])} if of.drifts else None
+    return Identified(
+        estimates, keys, misfit, remarks, ensembles, residuals, sensor=sensor
+    )
+
+
+def _remarks(of: _Release, q: Array, misfit: float, *, ensembles: bool) -> str:
+    """What a reader of the values has to know."""
     remarks = f"residuals are {misfit:.3g} times what noise alone would leave"
-    if misfit > 1.4:  # which noise leaves in one of a hundred, with twenty freedoms
+    if misfit > LACKING:
         remarks += (
-            ": the model lacks something, such as rolling resistance; intervals include"
-            " that"
+            ": the model lacks something, such as rolling resistance, or noise is slower"
+            " than samples show, as behind a filter; intervals include that"
+        )
+    if of.drifts:
+        remarks += (
+            f"; an offset of {1e3 * q[-2]:.3g} mrad and a drift of {1e3 * q[-1]:.3g}"
+            " mrad/s of the sensor were fitted with them"
+        )
+    else:
+        remarks += (
+            f"; fewer than {FEWEST_OF_DRIFT + 1} swings: a drift of the sensor is not"
+            " fitted with them"
         )
     if of.place is not None:
         remarks += (
@@ -295,15 +356,19 @@ def _told(
         )
     if ensembles:
         remarks += "; neighbouring releases diverge, so means of ensembles were fitted"
-    return Identified(estimates, keys, misfit, remarks, ensembles, residuals)
+    return remarks
 
 
-def _refuse_bad_fit(q: Array, bounds: Array, model: Array, misfit: float) -> None:
+def _refuse_bad_fit(
+    of: _Release, q: Array, bounds: Array, model: Array, misfit: float
+) -> None:
     """What least squares end at is no answer if the model does not
     rock like the structure.
     """
     away = f"{misfit:.3g} times the noise from those measured"
-    if not misfit <= WORST_MISFIT:
+    missed = model - of.measured.reshape(-1, 2)
+    close = np.sqrt(np.mean(missed**2, axis=0)) < CLOSE * model.max(axis=0)
+    if not misfit <= WORST_MISFIT and not close.all():
         seen = int((model[:, 1] > 0.0).sum())
         count = len(model)
         short = f", and only {seen} of {count}" * (seen < count)
@@ -335,13 +400,18 @@ def _starts(of: _Release) -> _Starts:
         rows.append((0.0, 1e-3 * b.half_width, 1e-9, 0.2 * b.half_width))
     first = of.first
     late = of.swings[0].time
+    if of.drifts:
+        far = DRIFT * of.first.amplitude
+        span = of.swings[-1].time
+        rows.append((0.0, 1e-3 * far, -far, far))
+        rows.append((0.0, 1e-3 * far / span, -far / span, far / span))
     first_rows = [(first.amplitude, 2e-3 * first.amplitude, 0.0, s.critical_rotation),
                   (0.0, 1e-3 * late, -late, late)]  # fmt: skip
     q, steps, low, high = np.array([*first_rows, *rows]).T
     starts = [q]
     if of.place is not None:
         own = float(law.kind == "value")  # which is 1 where nothing is lost
-        starts = [np.array([*q[:2], own + part * (q[2] - own), lever * b.half_width])
+        starts = [np.array([*q[:2], own + part * (q[2] - own), lever * b.half_width, *q[4:]])
                   for part, lever in SHARED]  # fmt: skip
     return _Starts(starts, steps, np.array([low, high]))
 

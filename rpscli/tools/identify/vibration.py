@@ -240,8 +240,9 @@ def _of_logarithms(
         why = "the motion does not determine it"
     if why:
         raise AnalysisError(
-            f"no vibration before uplift fits: {why}; choose a part of the motion by"
-            " --from and --to, or check the case and the units"
+            f"no vibration before uplift fits: {why}; the best has a period of {T:.4g} s"
+            f" and a damping ratio of {zeta:.3g}; choose a part of the motion by --from"
+            " and --to, or check the case and the units"
         )
     w, ratio = (
         estimate(value, error, freedoms) for value, error in zip(q, errors, strict=False)
@@ -282,16 +283,37 @@ def vibration_of_case(
             "; noise in the record of the ground is not in the intervals, which are too"
             " narrow by it"
         )
+    known = Identified(estimates, {}, found.misfit, remarks)
+    return _with_contact(structure, ratio, known)
+
+
+def _with_contact(
+    structure: PodiumStructure, ratio: Estimate, found: Identified
+) -> Identified:
+    """What a ratio of periods says of the contact of the podium."""
+    estimates = dict(found.estimates)
+    remarks = found.remarks
+    if ratio.high < 1.0:
+        remarks += (
+            "; the period is shorter than the case on a fixed base, which no contact"
+            " makes it: the building is stiffer or lighter than the case"
+        )
+        return found._replace(remarks=remarks)
     if not ratio.low > 1.0:
         remarks += "; 1, which is rigid contact, is not excluded"
-        return Identified(estimates, {}, found.misfit, remarks)
+        return found._replace(remarks=remarks)
 
-    estimates |= _contact_estimates(structure, ratio)
+    try:
+        estimates |= _contact_estimates(structure, ratio)
+    except AnalysisError as error:
+        remarks += "; period and damping are those measured, without a contact for them"
+        return found._replace(remarks=remarks, fault=str(error))
     remarks += (
         "; stiffness of the podium in full contact; a period does not show whether ends"
         " are `plane`, which the settlement is for, or `edges`: try both"
     )
-    return Identified(estimates, _contact_keys(ratio), found.misfit, remarks)
+    keys = _contact_keys(ratio)
+    return found._replace(estimates=estimates, keys=keys, remarks=remarks)
 
 
 def _contact_estimates(

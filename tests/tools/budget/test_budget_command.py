@@ -12,6 +12,7 @@ from paper_structures import needs_compiled_kernels
 from rpscli.case.case import load_case
 from rpscli.records.loading import load_components
 from rpscli.tools.budget.command import _values
+from rpscli.tools.budget.report import _ratio
 
 pytestmark = needs_compiled_kernels
 
@@ -156,3 +157,17 @@ def test_the_other_component_that_a_case_names(workplace, rps, rps_json, monkeyp
         "timehistory", "small.yaml", "--record", x, "--scale", "1.25", *NONE
     )
     assert hand["rotation_ratio"] == direct["rotation_ratio"]
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_case_that_overturns_has_no_ratios(workplace, rps):
+    result = rps("budget", "small.yaml", "--record", PULSES[-1], *NONE, exit_code=None)
+    assert result.exit_code == 0
+    assert "Warning" not in result.stderr
+    heads = [n for n, line in enumerate(result.stdout.splitlines()) if "ratio" in line]
+    rows = [line.split() for line in result.stdout.splitlines()[heads[0] :]]
+    as_it_is = next(row for row in rows if "overturned" in row)
+    assert as_it_is[as_it_is.index("overturned") + 1] == "-"
+    stood = [_ratio(value, math.inf) for value in (0.1, -1.0, math.inf, math.nan)]
+    assert stood == ["-"] * 4
+    assert _ratio(0.3, 0.2) == "1.5"

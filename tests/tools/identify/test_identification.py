@@ -14,7 +14,7 @@ from paper_structures import (
     podium,
 )
 from scipy.integrate import solve_ivp
-from scipy.signal import lsim
+from scipy.signal import butter, lfilter, lsim
 from shown_commands import VERIFICATION, told
 
 from rpscli.analyses.settings import TimeHistorySettings
@@ -182,6 +182,63 @@ def test_intervals_of_the_loss_hold_the_truth():
             loss, found = identified(number, noise)
             held_ones += held(loss, found.estimates["loss", "-"])
     told(VERIFICATION, "largest sample, every 0.01 s |", held_ones, 240)
+
+
+def of_sensor(noise, count, top):
+    """Low-pass noise of 5 Hz, and an offset and a drift, of up to .3 % of the largest sample."""
+    slow = lfilter(*butter(2, 5.0, fs=1.0 / DT), noise.normal(size=count + 500))[500:]
+    offset, change = noise.uniform(-3e-3, 3e-3, 2)
+    return top * (
+        1e-3 * slow / slow.std() + offset + change * np.linspace(0.0, 1.0, count)
+    )
+
+
+@pytest.mark.evidence("identification", "exact")
+@needs_compiled_kernels
+@pytest.mark.long
+def test_intervals_hold_with_the_drift_and_the_filter_of_a_sensor():
+    """What is refused, of tall buildings, is no interval."""
+    held_ones = refused = 0
+    for number in range(12):
+        noise = np.random.default_rng(1000 + number)
+        for _ in range(10):
+            design, loss = made_up(number)
+            law = replace(design.impact_law, kind="flexible", loss=loss)
+            true = replace(design, impact_law=law)
+            time, rotation = released(true, 0.4 + 0.2 * noise.uniform(), 25.0)
+            added = of_sensor(noise, len(time), np.abs(rotation).max())
+            case = replace(true, impact_law=ImpactLaw())
+            try:
+                found = rocking(case, time, rotation + added)
+            except AnalysisError:
+                refused += 1
+            else:
+                held_ones += held(loss, found.estimates["loss", "-"])
+    count = 120 - refused
+    assert held_ones >= 0.9 * count
+    told(VERIFICATION, "low-pass noise of 5 Hz ... |", held_ones, count)
+
+
+@needs_compiled_kernels
+def test_a_drift_of_the_sensor_is_fitted():
+    true = replace(podium(0, 0.15, 0.5), impact_law=ImpactLaw(loss=0.889))
+    time, rotation = released(true, 0.5, 25.0)
+    top = np.abs(rotation).max()
+    drift = 3e-3 * top / time[-1]
+    noise = np.random.default_rng(4).normal(0.0, 1e-4 * top, len(time))
+    case = replace(true, impact_law=ImpactLaw())
+    found = rocking(case, time, rotation + noise + 2e-3 * top + drift * time)
+    loss = found.estimates["loss", "-"]
+    assert held(0.889, loss)
+    assert loss.high - loss.low < 0.01
+    sensor = known(found.sensor)
+    assert sensor["offset"] == pytest.approx(2e-3 * top, rel=0.05)
+    assert sensor["drift"] == pytest.approx(drift, rel=0.2)
+    assert "of the sensor were fitted" in found.remarks
+    few = int(np.searchsorted(time, found.residuals[4]["time"] - 0.05))
+    short = rocking(case, time[:few], (rotation + noise)[:few])
+    assert short.sensor is None
+    assert "a drift of the sensor is not fitted" in short.remarks
 
 
 @needs_compiled_kernels

@@ -1,5 +1,6 @@
 """`rps identify`: from a file of measurements to values of the case."""
 
+import json
 import math
 
 import pytest
@@ -140,3 +141,50 @@ def test_refusals_say_what_to_do(workplace, rps, words, text, code, reason):
         text += "".join(f"{0.1 * i:.1f},{i % 3}\n" for i in range(40))
     (workplace / "data.csv").write_text(text, encoding="utf-8")
     rps("identify", "frame.yaml", "data.csv", *words, exit_code=code, says=reason)
+
+
+def write_decay(folder, period, damping=0.05):
+    """The acceleration of a floor that was let go."""
+    w = 2.0 * math.pi / period
+    damped = w * math.sqrt(1.0 - damping**2)
+    times = [0.005 * i for i in range(2000)]
+    floor = (math.exp(-damping * w * t) * math.cos(damped * t) for t in times)
+    lines = [f"{t:.3f},{a:.6f}" for t, a in zip(times, floor, strict=True)]
+    text = "\n".join(["time [s],floor_acceleration [g]", *lines])
+    (folder / "floor.csv").write_text(text, encoding="utf-8")
+
+
+def test_a_period_below_that_of_the_fixed_base_says_so(workplace, rps):
+    write_decay(workplace, 0.285)
+    shown = " ".join(rps("identify", "small.yaml", "floor.csv", "release").stdout.split())
+    assert "the period is shorter than the case on a fixed base" in shown
+    assert "is not excluded" not in shown
+    assert "period 0.28500 0.28500" in shown
+
+
+@pytest.mark.parametrize("damping", [0.05, 0.02])
+def test_period_and_damping_are_printed_where_no_contact_has_them(
+    workplace, rps, damping
+):
+    """Ends without a flat part have no bed."""
+    changes = ("slenderness: 0.15", "slenderness: 0"), ("ratio: 0.5", "ratio: 0.6")
+    write_case("spherical.yaml", *changes)
+    write_decay(workplace, 0.36, damping)
+    found = rps("identify", "spherical.yaml", "floor.csv", "release", exit_code=4)
+    assert "spherical ends have no flat part" in found.stderr
+    shown = " ".join(found.stdout.split())
+    assert "period 0.36000 " in shown
+    assert f"damping {damping:.4f}"[:-1] in shown
+    told = rps(
+        "identify", "spherical.yaml", "floor.csv", "release", "--json", exit_code=4
+    )
+    document = json.loads(told.stdout)
+    assert document["estimates"][0]["value"] == pytest.approx(0.36, rel=1e-3)
+    assert document["exit_code"] == 4
+
+
+def test_a_fit_that_is_refused_has_its_period_and_damping(workplace, rps):
+    write_decay(workplace, 0.1)
+    refused = rps("identify", "small.yaml", "floor.csv", "release", exit_code=4)
+    assert "the best has a period of" in refused.stderr
+    assert "and a damping ratio of" in refused.stderr
