@@ -395,7 +395,7 @@ LAWS = {
     "unnamed": "must be a name with a Quantity",
     "ours": "gap must not be a key of rps; rename it",
     "many": "5 constants, at most 4",
-    "lacking": r"missing 2 required positional arguments: 'damping' and 'linear'",
+    "lacking": "missing 1 required positional argument: 'damping'",
     "bounces": "must be DamperLaw",
 }
 LYING = {
@@ -485,7 +485,9 @@ def test_laws_that_lie_are_named(liars, workplace):
         with pytest.raises(PluginError, match=f"{name} of liars 1.0 .*({said})"):
             used(name)
     assert "c_own" in str(schema_of("case"))
-    with pytest.raises(PluginError, match=r"impact law bounces: its restitution is 1\.5"):
+    with pytest.raises(
+        PluginError, match=r"bounces of liars .*: its restitution is 1\.5"
+    ):
         rpscli.load_case("small.yaml", ["podium.impact=bounces"])
 
 

@@ -21,7 +21,14 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TextIO
 
 import click
 
-from rpscli.errors import LimitExceeded, OutputError, RpsError, visible
+from rpscli.errors import (
+    TRACEBACK,
+    LimitExceeded,
+    OutputError,
+    PluginError,
+    RpsError,
+    visible,
+)
 from rpscli.report.files import failure_document, json_text
 from rpscli.report.table import Heading, Part, Table
 from rpscli.user_cache import VARIABLE
@@ -257,8 +264,6 @@ def emit(text: str, stream: TextIO | None) -> None:
 
 INTERRUPTED = 130
 INTERNAL = 1
-TRACEBACK = "RPS_TRACEBACK"
-"""Environment variable that asks for the traceback of an internal error."""
 
 
 class Ending(NamedTuple):
@@ -337,7 +342,8 @@ def leave(error: RpsError | None) -> None:
 
 def _lines(error: BaseException) -> str:
     ending = Ending.of(error)
-    if ending.code == INTERNAL and os.environ.get(TRACEBACK):
+    shown = isinstance(error, PluginError)  # where it was raised
+    if ending.code == INTERNAL and os.environ.get(TRACEBACK) and not shown:
         return "".join(traceback.format_exception(error))
     if (
         type(error).__name__ == "NoArgsIsHelpError"
