@@ -309,7 +309,7 @@ def _sound(value: Any, kind: Any, name: str, what: str) -> Any:
 
 
 GUARD = "guards"
-"""Attribute of functions that check what another package's function gives: the package."""
+"""Attribute of functions that check what another package's give: that package."""
 
 
 def _guarded(function: Callable[..., Any], kind: Any, what: str) -> Callable[..., Any]:

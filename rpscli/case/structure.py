@@ -32,7 +32,7 @@ def structure_of(file: CaseFile, document: Document) -> PodiumStructure:
 def limits_without_result(
     limits: LimitsSection, structure: PodiumStructure
 ) -> Iterator[Fault]:
-    """Limits on results that the structure does not have, which would never be exceeded."""
+    """Limits on results that the structure lacks, which would never be exceeded."""
     for quantity in LIMITED:
         lacking = quantity.lacks(structure)
         if lacking and getattr(limits, quantity.name) is not None:

@@ -23,7 +23,7 @@ MOST_CONSTANTS = 4
 
 PATH = 0.1
 SPEEDS = 1e-3, 0.1
-"""Displacement [m] and velocities [m/s] at which dampers are asked whether they resist."""
+"""Displacement [m] and velocities [m/s] at which dampers must resist."""
 SLOPES = {"damping": "N s/m", "linear": "N s/m", "stiffness": "N/m"}
 """Answers of a damper that are sizes, with their units."""
 SMALL_RATE = 1e-3
