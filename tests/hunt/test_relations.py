@@ -382,7 +382,7 @@ def test_zeros_before_and_behind_a_record(random, system, motion, chosen):
 @needs_compiled_kernels
 @pytest.mark.parametrize("kinds", [PLANE, PAIRS], ids=["plane", "pairs"])
 def test_what_differs_is_seen(kinds):
-    """Other laws by a hundred-thousandth and more are no rounding: the relations have power."""
+    """A thousandth more mass is no rounding: the comparison has power."""
     seen = 0
     for number in range(12):
         draw = Random(f"power-{number}")  # noqa: S311 -- no secret
