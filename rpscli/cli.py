@@ -12,7 +12,7 @@ import click
 
 from rpscli.commands.registry import HOMES, KIND, OURS, SECTIONS, of_package, others
 from rpscli.commands.shell import Group
-from rpscli.registry import loaded, of_tools, summary_of, tools
+from rpscli.registry import loaded, of_tools, shared_output, summary_of, tools
 from rpscli.version import VERSION
 
 
@@ -69,7 +69,8 @@ class Program(Group):
         if "COMP_WORDS" not in os.environ:  # nobody asks what may come next
             options.setdefault("complete_var", "_RPS_COMPLETE_WITHOUT_WORDS")
         try:
-            code = super().main(words, *rest, **options)
+            with shared_output():
+                code = super().main(words, *rest, **options)
         except SystemExit as end:
             # Click leaves with 1 if nobody reads its help to the end, as in `rps --help |
             # head -1`.

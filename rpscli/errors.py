@@ -179,6 +179,16 @@ def visible(text: str) -> str:
     return _UNSEEN.sub("\ufffd", text)
 
 
+def words_of(error: BaseException) -> str:
+    """Kind and text of an error that others raise, in one line that only shows."""
+    try:
+        text = str(error)
+    except BaseException as another:  # noqa: BLE001 -- of others, as the first
+        text = f"its text cannot be read: {type(another).__name__}"
+    kind = type(error).__name__
+    return visible(" ".join(f"{kind}: {text}".split())).removesuffix(":")
+
+
 def beginning(line: str) -> str:
     """The part of a line that may be shown: the file may be another one, and a secret."""
     return repr(line) if len(line) <= 20 else f"{line[:20]!r}..."
@@ -205,6 +215,10 @@ def is_number(value: object) -> TypeGuard[float]:
         return math.isfinite(value)
     return False
 
+
+TRACEBACK = "RPS_TRACEBACK"
+"""Environment variable that asks for the traceback of an error
+of the program, or of a package."""
 
 SMALLEST = 1e-15
 LARGEST = 1e15

@@ -21,7 +21,8 @@ Names are letters, digits, _ and -; names of ours cannot be taken. What a functi
 must be of the kind that its annotation in rps says, and numbers finite: what is not, and
 every error, is told as a fault of the package. Nothing of a package is imported before
 one of its names is asked for; `rps explain plugins` lists all. What stands here changes
-as slowly as `rpscli.__all__`. tests/example_package in the source tree has one of each.
+as slowly as `rpscli.__all__`. `rps init --package NAME` writes a package with one of
+each.
 """
 
 from __future__ import annotations

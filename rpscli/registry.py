@@ -11,24 +11,38 @@ that is broken is named where it is asked for, and left out where others are.
 
 from __future__ import annotations
 
+import os
+import sys
 from collections.abc import Callable, Collection, Iterable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
+from copy import copy
 from dataclasses import is_dataclass, replace
 from functools import cache, wraps
 from pathlib import Path
+from threading import local
+from traceback import format_exception
 from types import ModuleType
 from typing import (
     TYPE_CHECKING,
     Any,
     Literal,
     NamedTuple,
+    TextIO,
     TypeVar,
     get_args,
     get_origin,
     get_type_hints,
 )
 
-from rpscli.errors import PluginError, RpsError, is_number, origin_of
+from rpscli.errors import (
+    TRACEBACK,
+    PluginError,
+    RpsError,
+    is_number,
+    origin_of,
+    visible,
+    words_of,
+)
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
@@ -114,9 +128,16 @@ class Registry(dict[str, Item]):
             "" if known else f"{name!r} must be letters, digits, _ and -, a letter first"
         )
 
-    def blaming(self, name: str) -> AbstractContextManager[None]:
-        """Errors of what follows are those of the package that adds a name."""
-        return _blaming(_named(_points(self.kind)[name]))
+    def blaming(self, name: str, *, aside: bool = True) -> AbstractContextManager[None]:
+        """Errors of what follows are those of the package that adds a name.
+
+        What it prints goes `aside`, to the standard error; a command's own results do not.
+        """
+        return blaming(self.owner(name), aside=aside)
+
+    def owner(self, name: str) -> str:
+        """The package that adds a name, as messages name it."""
+        return _named(_points(self.kind)[name])
 
     def names(self) -> list[str]:
         """All names, ours first; nothing is imported."""
@@ -175,13 +196,80 @@ def _loaded(point: EntryPoint) -> Any:
 
 
 @contextmanager
-def _blaming(what: str) -> Iterator[None]:
+def blaming(
+    what: str, *passing: type[BaseException], aside: bool = True
+) -> Iterator[None]:
+    """Errors of what follows are told as those of `what`, but for
+    ours and those `passing`; its traceback is shown if that is asked for.
+    """
+    try:
+        with printed_aside() if aside else nullcontext():
+            yield
+    except BaseException as error:  # whatever others raise is theirs
+        if isinstance(error, (RpsError, KeyboardInterrupt, *passing)):
+            raise
+        if os.environ.get(TRACEBACK) and sys.stderr is not None:
+            with suppress(OSError):
+                sys.stderr.write(visible("".join(format_exception(error))))
+        raise PluginError(f"{what}: {words_of(error)}") from error
+
+
+class _Printing(local):
+    """How deep a thread is inside functions of packages."""
+
+    depth = 0
+
+
+_printing = _Printing()
+
+
+@contextmanager
+def printed_aside() -> Iterator[None]:
+    """What this thread prints meanwhile goes to the standard
+    error, if the standard output is `Shared`.
+    """
+    _printing.depth += 1
     try:
         yield
-    except RpsError:
-        raise
-    except (Exception, SystemExit) as error:
-        raise PluginError(f"{what}: {type(error).__name__}: {error}") from error
+    finally:
+        _printing.depth -= 1
+
+
+class Shared:
+    """The standard output, for results alone: what packages print goes elsewhere.
+
+    Streams are of all threads, and packages may be asked in several.
+    """
+
+    def __init__(self, results: TextIO, others: TextIO) -> None:
+        self._results = results
+        self._others = others
+
+    def _stream(self) -> TextIO:
+        return self._others if _printing.depth else self._results
+
+    def write(self, text: str) -> int:
+        """To where it belongs."""
+        return self._stream().write(text)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream(), name)
+
+
+@contextmanager
+def shared_output() -> Iterator[None]:
+    """The standard output is `Shared` meanwhile."""
+    before = sys.stdout
+    if before is None or sys.stderr is None:
+        yield
+        return
+    shared: Any = Shared(before, sys.stderr)
+    sys.stdout = shared
+    try:
+        yield
+    finally:
+        if sys.stdout is shared:
+            sys.stdout = before
 
 
 def _sound(value: Any, kind: Any, name: str, what: str) -> Any:
@@ -221,7 +309,7 @@ def _sound(value: Any, kind: Any, name: str, what: str) -> Any:
 
 
 GUARD = "guards"
-"""Attribute of functions that check what another package's function gives."""
+"""Attribute of functions that check what another package's give: that package."""
 
 
 def _guarded(function: Callable[..., Any], kind: Any, what: str) -> Callable[..., Any]:
@@ -231,8 +319,9 @@ def _guarded(function: Callable[..., Any], kind: Any, what: str) -> Callable[...
     def guarded(*arguments: Any, **named: Any) -> Any:
         import numpy as np  # slow
 
-        with _blaming(what):
-            made = _sound(function(*arguments, **named), kind, name, what)
+        with blaming(what):
+            given = [apart(each) for each in arguments]
+            made = _sound(function(*given, **named), kind, name, what)
             if isinstance(made, np.ndarray):
                 good = made.shape == np.shape(arguments[0]) and np.all(np.isfinite(made))
                 if not good:
@@ -241,8 +330,31 @@ def _guarded(function: Callable[..., Any], kind: Any, what: str) -> Callable[...
                     )
             return made
 
-    setattr(guarded, GUARD, True)
+    setattr(guarded, GUARD, what)
     return guarded
+
+
+def owner_of(function: Any, otherwise: str) -> str:
+    """The package of a function that checks what it gives, as
+    messages name it.
+    """
+    return str(getattr(function, GUARD, otherwise))
+
+
+def apart(value: Any, copies: dict[int, Any] | None = None) -> Any:
+    """A value that functions of packages may write to without
+    changing ours: dataclasses copied, arrays of ours are read-only.
+    """
+    if not is_dataclass(value) or isinstance(value, type):
+        return value
+    copies = {} if copies is None else copies
+    if id(value) in copies:
+        return copies[id(value)]
+    made = copies[id(value)] = copy(value)
+    for name, inner in vars(value).items() if hasattr(value, "__dict__") else ():
+        if is_dataclass(inner):
+            object.__setattr__(made, name, apart(inner, copies))
+    return made
 
 
 def _meaning(item: Any) -> str:

@@ -13,7 +13,7 @@ from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import hint, listed
 
 WITH_UNIT = re.compile(
-    r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\s\d_,'].*?)?\s*$"
+    r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*((?:1/)?[^\s\d_,'].*?)?\s*$"
 )
 _POWER = r"([A-Za-zµ]{1,20})(?:(?:\^|\*\*)?(-?[1-9]))?"
 _FACTOR = re.compile(rf"\s*([*/·]|\s|^)\s*{_POWER}")
@@ -33,11 +33,17 @@ KINDS = {
     "Pa": ("a pressure", ("Pa", "MPa", "GPa", "N/mm2")),
     "rad": ("an angle", ("rad", "mrad", "deg")),
     "deg": ("a direction", ("deg", "rad")),
+    "1/s": ("a rate", ("1/s", "1/min")),
+    "rad/s": ("an angular velocity", ("rad/s", "deg/s", "rpm")),
+    "N s2/m2": ("a force over a squared velocity", ("N s2/m2", "kN s2/m2")),
 }
 """Quantity that each SI unit of the formats measures, and units
 it is usually written in."""
 
 OTHER_KINDS = {"Hz": "a frequency"}
+
+OF_TURNS = {"rad/s": r"(?i)hz|hertz", "1/s": r"(?i)hz|hertz|rad|deg|rpm|turn|gon"}
+"""Units with the dimension of these that differ by a turn, or may."""
 
 FOOT = 0.3048
 INCH = 0.0254
@@ -168,6 +174,11 @@ _WORDS |= {
 @cache
 def unit_of_text(written: str) -> Unit | None:
     """The unit that a text such as ``kN s/m`` names, or None."""
+    if written.startswith("1/"):
+        under = unit_of_text(written[2:]) if written[2:].isalpha() else None
+        return under and Unit(
+            1.0 / under.mantissa, -under.tens, tuple(-each for each in under.dimension)
+        )
     if not UNIT_TEXT.match(written):
         return None
     mantissa = 1.0
@@ -241,6 +252,11 @@ def si_factor(written: str, unit: str) -> float:
     """Factor from the unit `written` to the SI unit `unit`."""
     if written == "g" and unit == "m/s2":  # elsewhere a gram
         return STANDARD_GRAVITY
+    if unit in OF_TURNS and re.search(OF_TURNS[unit], written):
+        raise ValueError(
+            f"has the unit {written!r}, which counts turns or angles otherwise; write"
+            f" it in {unit}: a turn is 2 pi rad"
+        )
     kind, units = KINDS[unit]
     if written.lower() in {"ton", "tons"}:
         raise ValueError(
@@ -290,7 +306,7 @@ def as_written(value: float, unit: str) -> str:
 def _kind(dimension: tuple[int, ...]) -> str:
     """Kind of a quantity of these dimensions, in words."""
     for unit, kind in (
-        {unit: kind for unit, (kind, _) in KINDS.items()} | OTHER_KINDS
+        OTHER_KINDS | {unit: kind for unit, (kind, _) in KINDS.items()}
     ).items():
         if (known := unit_of_text(unit)) and known.dimension == dimension:
             return kind

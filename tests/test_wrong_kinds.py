@@ -72,6 +72,12 @@ CALLS = [
     (ValueError, "finite and > 0", lambda *_: api.profile_stiffnesses([1.0, 2.0], -1.0)),
     (ValueError, "finite and > 0", lambda *_: api.profile_stiffnesses([-1.0, 2.0], 1.0)),
     (ValueError, "finite and > 0", lambda *_: api.profile_stiffnesses([1.0], math.nan)),
+    (RecordError, "rotation 'x' must be", lambda _, r: api.MotionComponents(r, y=r).turned("x")),
+    (RecordError, "rotation nan must be", lambda _, r: api.MotionComponents(r).turned(math.nan)),
+    (ValueError, "masses must be a list",
+     lambda *_: api.Superstructure(None, [1e6], api.ModalDamping(0.05))),
+    (ValueError, "stiffnesses must be a list",
+     lambda *_: api.Superstructure([1e5], None, api.ModalDamping(0.05))),
 ]  # fmt: skip
 
 

@@ -93,8 +93,9 @@ def failure_text(history: Record, structure: PodiumStructure) -> str | None:
     if reason is None:
         return None
     if own := own_laws(structure):
-        reason = f"{reason}; with laws of other packages: {', '.join(own)}"
-        reason += "".join(f"; {text}" for law in own.values() for text in refusals(law))
+        refused = [text for law in own.values() for text in refusals(law)]
+        told = f"{reason}; with laws of other packages: {', '.join(own)}"
+        reason = "; ".join(refused) or told
     phase = PHASE_NAMES[int(history["phase"])]
     theta = history["rotation"] + 0.0
     return f"at t = {history['time']:.6g} s, {phase}, theta = {theta:.6g} rad: {reason}"

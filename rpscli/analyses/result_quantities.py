@@ -6,15 +6,20 @@ A quantity has its value in the attribute of its name: those of modes in
 `StoreyCurve`. Those of histories are a field of the kernel's record, which `kernel`
 names, or an attribute of `Histories`, for many of them at once; `Demand` has the same
 for one. JSON documents, headers of CSV files, stores of studies, tables for the
-terminal, limits, reports and figures all read this table, which imports nothing, so
-that the schema of a case can.
+terminal, limits, reports and figures all read this table, which imports no
+model, so that the schema of a case can.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from rpscli.analyses.needs import NEEDS
+
+if TYPE_CHECKING:
+    from rpscli.model.podium import PodiumStructure
 
 
 class ResultQuantity(NamedTuple):
@@ -47,8 +52,18 @@ class ResultQuantity(NamedTuple):
     def described(self) -> str:
         """Label, unit, what a ratio is made of, and what a structure without it lacks."""
         meaning = f": {self.meaning}" if self.meaning else ""
-        none = f"; None without {NEEDS[self.needs]}" if self.needs else ""
+        none = f"; None without {self.needed}" if self.needs else ""
         return f"{self.label} [{self.unit}]{meaning}{none}"
+
+    @property
+    def needed(self) -> str:
+        """What a structure must have to have it, in words; empty if all have it."""
+        return NEEDS[self.needs].words if self.needs else ""
+
+    def lacks(self, structure: PodiumStructure) -> str:
+        """What a structure lacks to have it, in words; empty if it has it."""
+        lacking = self.needs and not NEEDS[self.needs].met_by(structure)
+        return self.needed if lacking else ""
 
     @property
     def axis_label(self) -> str:
@@ -62,39 +77,6 @@ class ResultQuantity(NamedTuple):
 
 
 _Q = ResultQuantity
-
-_DESIGNED = "podium.column, podium.plan and superstructure.vertical_period in the case"
-
-NEEDS = {
-    "superstructure": "a superstructure",
-    "superstructure, flat part": (
-        "a superstructure on columns with a flat part, so that V_st > 0"
-    ),
-    "superstructure.storey_height": "superstructure.storey_height in the case",
-    "superstructure, devices": "a superstructure and podium.devices",
-    "superstructure.yield": "superstructure.yield in the case",
-    "superstructure.yield, storey_height": (
-        "superstructure.yield and superstructure.storey_height in the case"
-    ),
-    "podium.friction": "podium.friction in the case",
-    "contact": "a compliant podium.contact: kind plane or edges",
-    "plane contact": "podium.contact of the kind plane under flat ends",
-    "columns": (
-        "podium.columns, podium.plan and superstructure.vertical_period in the case,"
-        " without which it is of all columns, and leaves out the overturning moment and"
-        " the shock of impacts"
-    ),
-    "rows of columns": (
-        "podium.columns and podium.plan in the case, without which it is the mean of the"
-        " columns or their sum, and not that of the most loaded one"
-    ),
-    "designed columns": _DESIGNED,
-    "columns on arcs": f"curved ends, {_DESIGNED}",
-    "damper": "a damper in podium.devices",
-    "stop": "a stop in podium.devices",
-    "tendon": "a prestressed tendon in podium.devices",
-}
-"""Parts of a structure that a result needs, in words."""
 
 
 def values_of(result: object, quantities: Iterable[ResultQuantity]) -> dict[str, Any]:

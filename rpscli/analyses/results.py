@@ -32,6 +32,9 @@ from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.shown import data_frame, frozen
 from rpscli.units import digits_beside
 
+SMALL_SHARE = 1e-6
+"""Of the energy supplied: what its residual may have."""
+
 NEAR_CRITICAL = 0.8
 """Rotations above this part of the critical one are near it: a
 little more may overturn."""
@@ -396,6 +399,7 @@ class TimeHistoryResult(Demand):
             *self._beyond(),
             *self._of_column(),
             *self._created_energy(),
+            *self._energy_of_devices(),
             *self._still_moving(),
         )
 
@@ -430,6 +434,18 @@ class TimeHistoryResult(Demand):
                 f"the rigid impact law created {share:.1%} of the energy supplied at"
                 " impacts; compare with `impact: {law: flexible}`"
             )
+
+    def _energy_of_devices(self) -> Iterator[str]:
+        """Devices that give more energy to the motion than they take."""
+        supplied = abs(self.energy.input) + float(self.trace.energy_stored[0])
+        for index, device in enumerate(self.devices):
+            least = min(device.energy, float(np.min(self.trace.devices.energy[:, index])))
+            if least < -SMALL_SHARE * supplied:
+                yield (
+                    f"podium.devices.{index} ({device.kind}) gives energy to the motion:"
+                    f" what it has dissipated falls to {least:.3g} J, of {supplied:.3g} J"
+                    " that are supplied; its law pushes where it must resist"
+                )
 
     def _still_moving(self) -> Iterator[str]:
         """Motion at the end of the history, of a structure that survived."""

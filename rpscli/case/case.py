@@ -18,7 +18,7 @@ from rpscli.case.schema.case_file import CaseFile, RecordSection
 from rpscli.case.schema.check import checked
 from rpscli.case.schema.fields import Section
 from rpscli.case.schema.limits import LimitsSection
-from rpscli.case.structure import structure_of
+from rpscli.case.structure import limits_without_result, structure_of
 from rpscli.case.text.document import Document, format_of, text_of_values
 from rpscli.case.text.files import opened
 from rpscli.case.text.yaml_text import read_yaml
@@ -161,7 +161,8 @@ def load_case(source: str | Path | Mapping[str, Any], overrides: Overrides = ())
     """
     if isinstance(source, Mapping):
         text = text_of_values(source, "<case>")
-        case = case_from_mapping(json.loads(text), "<case>", None, overrides)
+        values = json.loads(text)
+        case = case_from_mapping(values, "<case>", None, overrides, alone=True)
         return replace(case, digest=hashlib.sha256(text.encode()).hexdigest())
     require_kind(source, (str, Path), "the case", "give the name of a file, or a mapping")
     return parse_case(**opened(source), overrides=overrides)
@@ -178,7 +179,7 @@ def parse_case(
             f"{name}: this is a {kind}, but a case is needed here; `rps {command} {name}`"
             " runs it"
         )
-    case = case_from_mapping(document, name, folder, overrides)
+    case = case_from_mapping(document, name, folder, overrides, alone=True)
     return replace(case, digest=hashlib.sha256(text.encode()).hexdigest())
 
 
@@ -189,19 +190,26 @@ def case_from_mapping(
     overrides: Overrides = (),
     *,
     label: str = "--set",
+    alone: bool = False,
 ) -> Case:
     """A case from values in memory, or from a document (or part of
     one) with its positions.
+
+    One that stands `alone` has no limit on a result that it lacks; a system of a study
+    is not judged by such.
     """
     document = mapping if isinstance(mapping, Document) else Document(name, dict(mapping))
     document = apply_overrides(document, overrides, label=label)
     file = checked(CaseFile, document)
+    structure = structure_of(file, document)
+    if alone:
+        document.refuse(limits_without_result(file.limits, structure))
     return Case(
         stem_of(Path(name.strip("<>"))) or "case",
         name,
         folder or Path(),
         file,
-        structure_of(file, document),
+        structure,
         tuple(doubts_of_text(file.superstructure)),
         written=document.content,
     )

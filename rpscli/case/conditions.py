@@ -141,6 +141,22 @@ def case_conditions(
     return with_friction(found, structure)
 
 
+def lacking_results(
+    conditions: Iterable[Condition], structure: PodiumStructure
+) -> list[str]:
+    """What conditions need that a structure does not have, each with its source."""
+    found = (
+        (each, LIMITS[each.name].lacks(structure))
+        for each in conditions
+        if each.name in LIMITS
+    )
+    return [
+        f"{each.source}: {each.name} needs {lacking}"
+        for each, lacking in found
+        if lacking
+    ]
+
+
 def unknown_of_pairs(
     conditions: Iterable[Condition], structure: PodiumStructure
 ) -> list[str]:

@@ -9,7 +9,6 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from rpscli.analyses.result_quantities import LIMITED, YIELDING
 from rpscli.case.build import DEVICE_KEYS, overturning_limit, rows_of
 from rpscli.case.schema.case_file import CaseFile, DeviceSection, SuperstructureSection
 from rpscli.case.schema.fields import Section
@@ -30,14 +29,6 @@ ETA = "podium.superstructure_mass_ratio"
 BEAM = "podium.cap_beam_mass"
 COLUMN_MASS = "podium.column_mass"
 COLUMNS = "podium.columns"
-COLUMN_LIMITS = tuple(
-    q.name for q in LIMITED if q.needs in {"designed columns", "columns on arcs"}
-)
-NUMBER = (
-    " needs podium.columns, which is missing: forces are those of all columns together;"
-    " give their number, or remove the limit"
-)
-"""Of limits on the force of one column, where how many there are is not known."""
 RATIOS = {
     "semi_diagonal": "R = sqrt(H^2 + B^2), as in '1.5 m'",
     "slenderness": "tan(alpha) = B/H, as in 0.15",
@@ -92,7 +83,6 @@ class Rules:
         yield from self._without_effect()
         yield from self._devices()
         yield from self._record()
-        yield from self._limits()
         yield from self._columns()
 
     def _where(self, key: str) -> str:
@@ -357,72 +347,6 @@ class Rules:
         if record.scale_to is not None and record.scale != 1.0:
             yield self._both("record.scale_to", "record.scale", "fix the factor")
 
-    def _limited(self, text: str, *names: str) -> Iterator[Fault]:
-        """The limits among some that are set."""
-        yield from (
-            at_key(f"limits.{name}", text) for name in _given(self.file.limits, *names)
-        )
-
-    def _limits(self) -> Iterator[Fault]:
-        """A limit on something that the case cannot give would never be exceeded."""
-        podium = self.file.podium
-        building = self.file.superstructure
-        if podium.column is None:
-            yield from self._limited(f" needs {COLUMN}, which is missing", *COLUMN_LIMITS)
-        if building.storeys == 0:
-            text = (
-                f" needs a building, but {STOREYS} = 0{self._where(STOREYS)}; remove the"
-                " limit"
-            )
-            of_building = (q.name for q in LIMITED if "superstructure" in q.needs)
-            yield from self._limited(text, *of_building)
-            yield from self._limits_of_columns()
-            return
-        if building.storey_height is None:
-            text = f" needs {HEIGHT}, which is missing"
-            yield from self._limited(text, "drift_ratio", "residual_drift_ratio")
-        if building.yields is None:
-            text = (
-                f" needs {YIELD}, strengths of storeys, which is missing; give it, or"
-                " remove the"
-            )
-            yield from self._limited(
-                f"{text} limit", *(q.name for q in YIELDING if q.limit)
-            )
-        yield from self._limits_of_columns()
-
-    def _limits_of_columns(self) -> Iterator[Fault]:
-        """Limits on the force of one column, which the overturning moment and the shock
-        of impacts change.
-        """
-        building = self.file.superstructure
-        podium = self.file.podium
-        names = "max_column_force", "min_column_force", *COLUMN_LIMITS
-        storeys = building.storeys != 0
-        number = [COLUMNS] * (podium.columns is None)
-        lacking = {}
-        if podium.plan is None and (storeys or (podium.columns or 1) > 1):
-            lacking["the overturning moment"] = "podium.plan"
-            text = (
-                ": the shear of a column is known as the mean of the columns only, and"
-                " the most loaded one has more; give"
-                f" {listed(['podium.plan', *number], 'and')}, or remove the limit"
-            )
-            yield from self._limited(text, "max_column_shear")
-        elif number and (storeys or podium.plan is not None):
-            yield from self._limited(NUMBER, "max_column_shear")
-        if building.vertical_period is None and storeys:
-            lacking["the shock of impacts"] = "superstructure.vertical_period"
-        if lacking:
-            text = (
-                f": the force of a column is known without {listed(lacking, 'and')} only,"
-                " and may be several times as large with it; give"
-                f" {listed([*lacking.values(), *number], 'and')}"
-            )
-            yield from self._limited(text, *names)
-        elif number and (storeys or podium.plan is not None):
-            yield from self._limited(NUMBER, *names[:2])
-
     def _columns(self) -> Iterator[Fault]:
         """Rows have heights for the moment of the building; the
         force of one column a number.
@@ -458,17 +382,10 @@ class Rules:
             yield at_key("podium.plan", f" needs {HEIGHT}: the moment has lever arms")
 
     def faults_of_bearing(self, bearing: Bearing) -> Iterator[Fault]:
-        """Limits and strengths that its ends do not have, and
-        rotations beyond the model.
-        """
+        """Strengths that its ends do not have, and rotations beyond the model."""
         file = self.file
         analysis = self.file.analysis
         critical = bearing.critical_rotation
-        if bearing.is_flat:
-            text = (
-                " needs curved ends: flat ones stand on edges; limit crushed_width_ratio"
-            )
-            yield from self._limited(text, "contact_pressure_ratio")
         yields = file.superstructure.yields
         if bearing.is_spherical and yields is not None and yields.ratio is not None:
             text = (

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.build import bearing_of, built
 from rpscli.case.rules import BEARING, COLUMN, DIMENSIONS, YIELD, Rules, at_key
 from rpscli.case.schema.case_file import CaseFile
+from rpscli.case.schema.limits import LimitsSection
 from rpscli.case.text.document import Document, Fault, path_of
 from rpscli.model.podium import PodiumStructure
 
@@ -25,6 +27,17 @@ def structure_of(file: CaseFile, document: Document) -> PodiumStructure:
     except ValueError as error:
         raise document.refusal([refused_by_model(error, document)]) from None
     return structure
+
+
+def limits_without_result(
+    limits: LimitsSection, structure: PodiumStructure
+) -> Iterator[Fault]:
+    """Limits on results that the structure lacks, which would never be exceeded."""
+    for quantity in LIMITED:
+        lacking = quantity.lacks(structure)
+        if lacking and getattr(limits, quantity.name) is not None:
+            text = f" needs {lacking}; give that, or remove the limit"
+            yield at_key(f"limits.{quantity.name}", text)
 
 
 LEAST_STRENGTH = 1e-4

@@ -113,7 +113,9 @@ def _derived(structure: PodiumStructure) -> dict[str, Any]:
 
 
 def _record(case: Case) -> tuple[dict[str, Any] | None, RpsError | None]:
-    """The case's own record, or why it cannot be read; nothing if the case names none."""
+    """The case's own record, and why it cannot be read or goes with no limit of the case;
+    nothing if the case names none.
+    """
     from rpscli.case.plausibility import doubts_of_directions
 
     if case.record is None:
@@ -126,9 +128,8 @@ def _record(case: Case) -> tuple[dict[str, Any] | None, RpsError | None]:
     both = motion.y is not None
     warnings = [*found.warnings, *motion.warnings]
     doubts = [str(doubt) for doubt in doubts_of_directions(case.structure, both=both)]
-    doubts += (
-        unknown_of_pairs(conditions_of(case.limits, ""), case.structure) if both else []
-    )
+    limits = conditions_of(case.limits, "limits of the case")
+    unknown = unknown_of_pairs(limits, case.structure) if both else []
     known = {name: getattr(found, name) for name in RECORD}
     y = motion.y
     across = y and {name: getattr(y, name) for name in RECORD}
@@ -137,7 +138,7 @@ def _record(case: Case) -> tuple[dict[str, Any] | None, RpsError | None]:
         "y": across,
         "scale": motion.scale,
         "warnings": [*warnings, *doubts],
-    }, None
+    }, CaseError("\n".join(unknown)) if unknown else None
 
 
 def _unknown(

@@ -7,6 +7,7 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Mapping
+from keyword import iskeyword
 from pathlib import Path
 from typing import Any
 
@@ -73,6 +74,37 @@ def example_files(name: str) -> dict[str, bytes]:
     }
 
 
+TEMPLATE = "rps-example"
+"""Name of the package that is written under another name."""
+
+
+def package_files(name: str) -> dict[str, bytes]:
+    """A package with one of everything that may be added to rps,
+    of another name, by path.
+    """
+    module = name.replace("-", "_")
+    taken = module in {*sys.stdlib_module_names, "rpscli"} or iskeyword(module)
+    if not re.fullmatch(r"[a-z][a-z0-9]*([-_][a-z0-9]+)*", name) or taken:
+        raise UsageError(
+            f"--package {name}: must be small letters, digits, - and _, a letter first,"
+            " and no module of Python or rps, as in my-dampers"
+        )
+    here = Path(__file__).resolve()
+    inside = here.parents[1] / "example_package"
+    place = inside if inside.is_dir() else here.parents[2] / "tests" / inside.name
+    files = {}
+    for file in (place / each for each in ("pyproject.toml", "README.md")):
+        files[file.name] = file.read_text("utf-8")
+    code = TEMPLATE.replace("-", "_")
+    files[f"{code}.py"] = (place / f"{code}.py").read_text("utf-8")
+    return {
+        path.replace(code, module): text.replace(TEMPLATE, name)
+        .replace(code, module)
+        .encode()
+        for path, text in files.items()
+    }
+
+
 @click.command("init")
 @click.argument("file", required=False, type=click.Path(path_type=Path))
 @click.option("--study", is_flag=True, help="A study in place of a case.")
@@ -96,11 +128,20 @@ def example_files(name: str) -> dict[str, bytes]:
         " the YAML language server check and complete what is typed."
     ),
 )
+@click.option(
+    "--package",
+    metavar="NAME",
+    help=(
+        "Write a Python package with one of everything that may be added to rps (a"
+        " damper, a measure, a report, ...) into the folder FILE (NAME by default)."
+    ),
+)
 @click.option("--force", is_flag=True, help="Overwrite files that exist.")
 @terminal_options
 def command(
     file: Path | None,
     example: str | None,
+    package: str | None,
     *,
     study: bool,
     editor: bool,
@@ -110,12 +151,17 @@ def command(
     """Write a commented case to FILE (case.yaml or study.yaml
     by default; - prints it).
     """
-    if example is not None:
-        if study or editor or str(file) == "-":
+    if example is not None or package is not None:
+        both = example is not None and package is not None
+        if both or study or editor or str(file) == "-":
             raise UsageError(
-                "--example writes files as they are into a folder; leave out the rest"
+                f"{'--package' if example is None else '--example'} writes files as they"
+                " are into a folder; leave out the rest"
             )
-        _example(example, file or Path(FOLDER), terminal, force=force)
+        if package is not None:
+            _package(package, file or Path(package), terminal, force=force)
+        else:
+            _example(example or "", file or Path(FOLDER), terminal, force=force)
         return
     from rpscli.case.text.files import starter_text
 
@@ -153,9 +199,16 @@ def _example(name: str, folder: Path, terminal: Terminal, *, force: bool) -> Non
     _write(files, terminal, force=force)
 
 
-def _write(files: Mapping[Path, bytes], terminal: Terminal, *, force: bool) -> None:
+def _package(name: str, folder: Path, terminal: Terminal, *, force: bool) -> None:
+    files = {folder / path: content for path, content in package_files(name).items()}
+    _write(files, terminal, f"pip install -e {folder}", force=force)
+
+
+def _write(
+    files: Mapping[Path, bytes], terminal: Terminal, then: str = "", *, force: bool
+) -> None:
     """All of the files, of which the first is what was asked for; the
-    same may be there already.
+    same may be there already. What to do `then` is said.
     """
     for each, content in files.items():
         if each.exists() and not force and each.read_bytes() != content:
@@ -164,17 +217,21 @@ def _write(files: Mapping[Path, bytes], terminal: Terminal, *, force: bool) -> N
             )
     write_whole(files)
     first, *others = files
-    # What names a base is a study, or a file of a tool.
-    keys = {*re.findall(r"^(\w+):", files[first].decode(), re.MULTILINE)}
-    others_kind = (name for name, kind in FILE_KINDS.items() if kind.marks & keys)
-    verb = next(others_kind, "sweep")
-    check = (
-        f"{verb} {first} --dry-run" if b"\nbase:" in files[first] else f"check {first}"
-    )
     also = f" with {listed(map(str, others), 'and')}" if others else ""
-    terminal.note(f"written to {first}{also}; next: rps {check}")
+    terminal.note(f"written to {first}{also}; next: {then or _next(first, files[first])}")
     if terminal.as_json:
         terminal.result({**heading("init"), "files": [str(each) for each in files]})
+
+
+def _next(file: Path, content: bytes) -> str:
+    """The command that looks at a file that was written."""
+    # What names a base is a study, or a file of a tool.
+    keys = {*re.findall(r"^(\w+):", content.decode(), re.MULTILINE)}
+    others_kind = (name for name, kind in FILE_KINDS.items() if kind.marks & keys)
+    verb = next(others_kind, "sweep")
+    return (
+        f"rps {verb} {file} --dry-run" if b"\nbase:" in content else f"rps check {file}"
+    )
 
 
 FORMATS = ("case", "study", *FILE_KINDS)

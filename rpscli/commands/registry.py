@@ -52,7 +52,7 @@ def of_package(name: str) -> click.Command:
 
     def blamed(ctx: click.Context) -> Any:
         passing: BaseException
-        with others().blaming(name):
+        with others().blaming(name, aside=False):
             try:
                 return invoke(ctx)
             except (click.ClickException, click.exceptions.Exit, click.Abort) as error:

@@ -25,7 +25,7 @@ from rpscli.commands.page_section import PAGE_SECTIONS
 from rpscli.commands.shell.options import CaseRequest, Output, RunChoices
 from rpscli.commands.shell.terminal import announce_compilation, concluded
 from rpscli.commands.study import Swept, counts_of_points, swept
-from rpscli.errors import RecordError, RpsError, UsageError
+from rpscli.errors import CaseError, RecordError, RpsError, UsageError
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.source import Source
 from rpscli.registry import of_tools
@@ -161,7 +161,10 @@ def earlier_results(folder: Path) -> Earlier:
                 f" STUDY -o {folder}` goes on with it"
             ) from None
     except ValueError as error:
-        what = f"holds a {RUN_FILE} of which {error}"
+        raise CaseError(
+            f"{place}: is no description of a run of rps, or is damaged: {error}; run the"
+            " command again, or restore the file"
+        ) from None
     inside = sorted(path.parent for path in folder.glob(f"*/{RUN_FILE}"))
     hint = f"; name one of the folders in it, such as {inside[0]}" if inside else ""
     raise UsageError(

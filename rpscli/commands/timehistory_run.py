@@ -9,17 +9,22 @@ from dataclasses import dataclass, field, replace
 from itertools import groupby
 from typing import Any, NamedTuple
 
-from rpscli.analyses.column_forces import OF_COLUMNS
-from rpscli.analyses.result_quantities import LIMITED, NEEDS, ResultQuantity
+from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.timehistory import Neighbour, neighbours, time_history
-from rpscli.case.conditions import LIMITS, Condition, case_conditions, unknown_of_pairs
+from rpscli.case.conditions import (
+    Condition,
+    case_conditions,
+    lacking_results,
+    unknown_of_pairs,
+)
 from rpscli.case.plausibility import doubts_of_directions
 from rpscli.commands import inputs
 from rpscli.commands.shell.options import Output
 from rpscli.commands.shell.terminal import concluded, leave, patience
 from rpscli.errors import (
     AnalysisError,
+    CaseError,
     LimitExceeded,
     RecordError,
     RpsError,
@@ -150,8 +155,7 @@ def compute(
     ground = history.ground
     folder = history.folder
     limits = [*case_conditions(case.limits, case.structure), *conditions]
-    if ground.y is not None and (lines := unknown_of_pairs(limits, case.structure)):
-        raise UsageError("\n".join(lines))  # known before minutes are spent
+    refuse_unknown(history, conditions)  # known before minutes are spent
     with patience(case, ground, out.terminal):
         result = time_history(case.structure, ground, case.analysis)
     folder.add_all(timehistory_files(result, case.title, out.look))
@@ -161,8 +165,6 @@ def compute(
     if result.failure:
         history.error = AnalysisError(result.failure)
     else:
-        for limit in limits:
-            _refuse_unknown(limit, result)
         records = Records.of([result.outcome], [history.demands], [result.record.source])
         history.verdicts = judged_records(records, [history.label], limits)
         over = [
@@ -182,18 +184,26 @@ def limited(result: TimeHistoryResult) -> dict[str, float]:
     }
 
 
-def _refuse_unknown(limit: Condition, result: TimeHistoryResult) -> None:
-    """Refuse a limit on what a history does not know: raises UsageError."""
-    needs = LIMITS[limit.name].needs if limit.name in LIMITS else ""
-    structure = result.structure
-    incomplete = limit.name in OF_COLUMNS and (
-        not structure.counts_columns
-        or structure.left_out_of_columns(
-            both=result.both_components, axial=limit.name != "max_column_shear"
-        )
-    )
-    if needs and (getattr(result, limit.name) is None or incomplete):
-        raise UsageError(f"{limit.source}: {limit.name} needs {NEEDS[needs]}")
+def refuse_unknown(history: History, conditions: Sequence[Condition]) -> None:
+    """Refuse limits on what a history does not know.
+
+    Raises
+    ------
+    CaseError
+        For those of the case.
+    UsageError
+        For `conditions`, which come with the command.
+    """
+    case = history.given.case
+    structure = case.structure
+    unknown = []
+    if history.ground.y is not None:
+        own = case_conditions(case.limits, structure)
+        if lines := unknown_of_pairs(own, structure):
+            raise CaseError("\n".join(lines))
+        unknown = unknown_of_pairs(conditions, structure)
+    if lines := [*lacking_results(conditions, structure), *unknown]:
+        raise UsageError("\n".join(lines))
 
 
 def _document(history: History, result: TimeHistoryResult) -> dict[str, Any]:

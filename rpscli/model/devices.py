@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rpscli.errors import PluginError, require_fields
+from rpscli.errors import require_fields
 from rpscli.model.bearing import Bearing, UpliftedState
 from rpscli.model.own import DamperLaw, OwnLaw
 from rpscli.model.podium import (
@@ -274,11 +274,8 @@ class OwnDamper(Device):
 
     def __post_init__(self) -> None:
         require_fields(self)
-        if force := self.law.force(0.1, 0.0, *self.values):
-            raise PluginError(
-                f"damper {self.name}: its force at rest, at a displacement of 0.1 m, is"
-                f" {force:g} N, and must be 0; friction and stops are kinds of rps"
-            )
+        self.law.require_values(self.values, f"damper {self.name}")
+        self.law.require_resistance(self.name, self.values)
 
     @property
     def kind(self) -> str:

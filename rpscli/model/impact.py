@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-from rpscli.errors import PluginError, require_fields
+from rpscli.errors import require_fields
 from rpscli.model.bearing import Bearing
 from rpscli.model.own import RestitutionLaw
 from rpscli.registry import Registry
@@ -25,10 +25,6 @@ many pairs by less than 5 %."""
 
 LONGEST_CONTACT = 0.02
 """Longest impact [s]; beyond it a pass would no longer be short against the motion."""
-
-SMALL_RATE = 1e-3
-"""Rate of the tilt at which a law of another package gives the
-one e of tables [rad/s]."""
 
 
 @dataclass(frozen=True)
@@ -80,6 +76,8 @@ class ImpactLaw:
             raise ValueError(f"impact law {self.kind!r} must be flexible, rigid or value")
         if (self.kind == "value") != (self.restitution is not None):
             raise ValueError("law `value`, and it alone, needs a restitution, as in 0.92")
+        if self.own is not None:
+            self.own.require_values(self.constants, f"impact law {self.kind}")
         if not 0.0 <= self.contact_time <= LONGEST_CONTACT:
             raise ValueError(
                 f"contact_time = {self.contact_time} s must be within 0 and"
@@ -116,14 +114,8 @@ class ImpactLaw:
         )
         e = None if law is None else law(bearing, gamma, eta)
         if self.own is not None:
-            given = SMALL_RATE, bearing.slenderness, bearing.inertia_ratio, gamma, eta
-            e = self.own.restitution(*given, *self.constants)
-            if not 0.0 < e <= 1.0:
-                text = (
-                    f"{self.kind}: its restitution is {e:g} at a rate of {SMALL_RATE:g}"
-                    " rad/s"
-                )
-                raise PluginError(f"impact law {text}, and must be above 0 and at most 1")
+            given = bearing.slenderness, bearing.inertia_ratio, gamma, eta
+            e = self.own.at_small_rate(self.kind, (*given, *self.constants))
         if e is not None:
             return self.factor * (1.0 - self.loss * (1.0 - e))
         assert self.restitution is not None, "the law `value` has one"

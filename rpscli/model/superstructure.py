@@ -220,8 +220,9 @@ class Superstructure(Shown):
         """Take any sequence; refuse what is not a building."""
         require_fields(self)
         lengths = set()
-        for name in ("masses", "stiffnesses", "storey_heights", "strengths"):
-            if (value := getattr(self, name)) is not None:
+        needed = "masses", "stiffnesses"
+        for name in (*needed, "storey_heights", "strengths"):
+            if (value := getattr(self, name)) is not None or name in needed:
                 array: Array = np.zeros((0, 0))  # of what is no list
                 with suppress(TypeError, ValueError, OverflowError):
                     array = np.array(value, dtype=float)

@@ -12,10 +12,10 @@ from typing import Any
 
 from rpscli.compiler.mathematics import AT
 from rpscli.compiler.values import DOUBLE, NotInLanguage
-from rpscli.errors import PluginError
+from rpscli.errors import PluginError, words_of
 from rpscli.physics.compile import LAW_NUMBERS
 from rpscli.physics.kernels import are_interpreted
-from rpscli.registry import GUARD
+from rpscli.registry import GUARD, owner_of
 
 Law = Callable[..., float]
 
@@ -35,7 +35,9 @@ class InterpretedLaw:
         """What the law gives."""
         try:
             found = float(self.function(*numbers[: self.taken]))
-        except Exception:  # noqa: BLE001 -- of others
+        except KeyboardInterrupt:
+            raise
+        except BaseException:  # noqa: BLE001 -- of others
             found = math.nan
         if not math.isfinite(found) and math.isfinite(sum(map(abs, numbers))):
             self.refused = [1.0, *numbers]
@@ -93,11 +95,15 @@ def said_of(function: Law, taken: int) -> str:
     refused, *given = loaded(plain(function), taken).numbers_at(REFUSED, 1 + taken)
     if not refused:
         return ""
+    at = f"{function.__name__}({numbers(given[:taken])})"
+    owner = owner_of(function, f"{function.__module__}.{function.__qualname__}")
     try:
-        said = f"gives {function(*given[:taken])}"
-    except Exception as error:  # noqa: BLE001 -- of others
-        said = f"{type(error).__name__}: {error}"
-    return f"{function.__name__}({numbers(given[:taken])}): {said}"
+        said = f"gives {plain(function)(*given[:taken])}"
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # noqa: BLE001 -- of others
+        said = words_of(error)
+    return f"{owner}: {at}: {said}"
 
 
 def numbers(given: Sequence[float]) -> str:

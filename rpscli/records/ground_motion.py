@@ -381,6 +381,10 @@ class MotionComponents(Frozen):
         """
         x = self.horizontal
         y = self.y
+        if not is_number(rotation):
+            raise RecordError(
+                f"the rotation {told(rotation)} must be a finite number [deg]"
+            )
         if y is None or rotation % 360.0 == 0.0:
             return self
         along, across = (
@@ -424,6 +428,8 @@ def require_one_step(one: GroundMotion, other: GroundMotion, name: str) -> None:
 def rotated(first: GroundMotion, second: GroundMotion, angle: float) -> GroundMotion:
     """The motion in a plane that stands at an angle to the first component [deg]."""
     require_one_step(first, second, "second")
+    if not is_number(angle):
+        raise RecordError(f"the angle {told(angle)} must be a finite number [deg]")
     # A component itself is not changed by rounding.
     quarters, rest = divmod(angle, 90.0)
     c = math.cos(math.radians(rest))

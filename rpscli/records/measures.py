@@ -21,9 +21,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.constants import STANDARD_GRAVITY
-from rpscli.errors import RecordError, is_number, listed, require_kind, told
+from rpscli.errors import (
+    LARGEST,
+    PluginError,
+    RecordError,
+    is_number,
+    listed,
+    require_kind,
+    told,
+)
 from rpscli.records.ground_motion import GroundMotion, rotated
-from rpscli.registry import Registry
+from rpscli.registry import Registry, owner_of
 from rpscli.shown import Shown
 from rpscli.units import KINDS
 
@@ -398,7 +406,14 @@ def measured(
     assert period is not None or not found.at_period, (
         f"{measure} is asked for at a period"
     )
-    return float(found.of(motion, math.nan if period is None else period, damping))
+    made = float(found.of(motion, math.nan if period is None else period, damping))
+    if not 0.0 <= made <= LARGEST:
+        owner = owner_of(found.of, measure)
+        raise PluginError(
+            f"{owner}: it is {made:g} {found.unit} for {motion.name}, and must be at least"
+            f" 0 and at most {LARGEST:g}"
+        )
+    return made
 
 
 def factor_to(value: float, unscaled: float, measure: Measure, source: str) -> float:

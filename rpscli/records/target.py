@@ -18,11 +18,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.constants import STANDARD_GRAVITY
-from rpscli.errors import RecordError, beginning, stem_of
+from rpscli.errors import (
+    LARGEST,
+    PluginError,
+    RecordError,
+    beginning,
+    stem_of,
+    told,
+)
 from rpscli.records.measures import Of
 from rpscli.records.quantities import ACCELERATIONS, KNOWN_UNITS, canonical_unit
 from rpscli.records.source import Query, hint, parse_query
-from rpscli.registry import Registry
+from rpscli.registry import Registry, owner_of
 from rpscli.titled_table import Row, TitledTable, number_of, text_of, titled_table
 
 Array = NDArray[np.float64]
@@ -83,6 +90,18 @@ class TargetSpectrum:
     pinned: float | None = None
     pga: float | None = None
 
+    def __post_init__(self) -> None:
+        """Refuse peaks, damping and periods that no spectrum has."""
+        for name in ("pgv", "pgd", "pga", "pinned"):
+            value = getattr(self, name)
+            if value is not None and not 0.0 < value <= LARGEST:
+                raise ValueError(f"{name} = {told(value)} must be > 0")
+        if not 0.0 < self.damping < 1.0:
+            raise ValueError(f"damping = {told(self.damping)} must be > 0 and < 1")
+        low, high = self.span
+        if not 0.0 <= low < high:
+            raise ValueError(f"span = {self.span} must be two periods >= 0 that grow")
+
     @property
     def ground_acceleration(self) -> float | None:
         """PGA that goes with it; None if it has no value at T = 0 [m/s2]."""
@@ -97,7 +116,14 @@ class TargetSpectrum:
                 f"{self.source}: has no value at {periods[outside][0]:g} s; it is defined"
                 f" from {low:g} to {high:g} s: choose --periods within"
             )
-        return self.shape(np.clip(periods, low, high))
+        found = self.shape(np.clip(periods, low, high))
+        if np.any(found < 0.0) or np.any(found > LARGEST):
+            owner = owner_of(self.shape, self.source)
+            raise PluginError(
+                f"{owner}: its ordinates are {np.min(found):g} to {np.max(found):g} m/s2,"
+                f" and must be at least 0 and at most {LARGEST:g}"
+            )
+        return found
 
 
 def _velocity_of(shape: Shape) -> float:

@@ -16,6 +16,7 @@ from rpscli.analyses.result_quantities import STOREY_CURVE, STOREYS, STOREYS_YIE
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.trace import Event, sampled
 from rpscli.model.podium import PodiumStructure
+from rpscli.registry import apart
 from rpscli.report.figures import (
     bearing,
     floors,
@@ -35,7 +36,7 @@ def _figures(figures: Mapping[str, Draw], result: Any, title: str, look: Look) -
 
     def drawn(name: str, figure: style.Figure) -> None:
         with FIGURES.blaming(name):
-            style.single(FIGURES[name], result, (title, name), 3.4)(figure)
+            style.single(FIGURES[name], apart(result), (title, name), 3.4)(figure)
             figure.draw_without_rendering()  # errors in its labels surface here
 
     added = {name: partial(drawn, name) for name in look.added}

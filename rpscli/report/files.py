@@ -98,10 +98,17 @@ def read_json(path: Path, kinds: Any) -> Document:
     # kinds.
     try:
         document = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, RecursionError) as error:
-        if isinstance(error, FileNotFoundError):
-            raise
-        raise ValueError(f"cannot be read: {error}") from None
+    except FileNotFoundError:
+        raise
+    except json.JSONDecodeError as error:
+        place = f"line {error.lineno}, column {error.colno}"
+        raise ValueError(f"the file is no JSON at {place}") from None
+    except UnicodeDecodeError:
+        raise ValueError("the file is no text in UTF-8") from None
+    except RecursionError:
+        raise ValueError("the file is nested too deeply") from None
+    except OSError as error:
+        raise ValueError(f"the file cannot be read: {error.strerror}") from None
     return dict(_checked(document, kinds, "the file"))
 
 

@@ -25,7 +25,7 @@ from rpscli.analyses.largest_demands import Demands
 from rpscli.analyses.modal import modal
 from rpscli.analyses.outcomes import failure_text, outcomes_of
 from rpscli.analyses.pushover import pushover
-from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
+from rpscli.analyses.result_quantities import ResultQuantity
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.case.case import Case, case_from_mapping
@@ -158,19 +158,9 @@ class System:
         return replace(self.structure, impact_law=law)
 
 
-def unjudged(varied: Mapping[str, Any]) -> list[str]:
-    """Limits of the base that a system without its building is
-    not judged by, as is said.
-    """
-    if varied.get("superstructure.storeys") != 0:
-        return []
-    return [f"limits.{q.name}" for q in LIMITED if "superstructure" in q.needs]
-
-
 def resolved(plan: Plan, values: Sequence[Any]) -> Case:
     """The case with values at the varied keys."""
     varied = dict(zip(plan.keys, values, strict=True))
-    varied |= dict.fromkeys(unjudged(varied))
     folder = Path(plan.base_folder)
     return case_from_mapping(plan.base, plan.base_name, folder, varied, label="vary")
 

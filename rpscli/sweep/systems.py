@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from rpscli.analyses.result_quantities import HISTORY, NEEDS, SAMPLED, YIELDING
+from rpscli.analyses.result_quantities import HISTORY, SAMPLED, YIELDING
 from rpscli.case.case import Case, case_from_mapping
 from rpscli.case.conditions import (
     Condition,
@@ -27,7 +27,7 @@ from rpscli.case.study.schema import PerturbSection, RangeSection, SampleSection
 from rpscli.case.study.study import Study
 from rpscli.case.text.document import Fault, Place
 from rpscli.errors import CaseError, RecordError
-from rpscli.model.podium import Array, PodiumStructure
+from rpscli.model.podium import Array
 from rpscli.records.measures import Of, needs_period
 from rpscli.records.source import Source
 from rpscli.sweep.evaluation import (
@@ -35,7 +35,6 @@ from rpscli.sweep.evaluation import (
     Plan,
     StudyContext,
     System,
-    unjudged,
 )
 from rpscli.sweep.motions import RecordRequest
 
@@ -289,9 +288,7 @@ def _limits(study: Study, case: Case, *, both: bool) -> tuple[Condition, ...]:
 
 def lacking(study: Study, case: Case) -> frozenset[str]:
     """Names of the results that histories of this case will not have."""
-    without = {
-        q.name for q in OF_HISTORIES if q.needs and not HAS[q.needs](case.structure)
-    }
+    without = {q.name for q in OF_HISTORIES if q.lacks(case.structure)}
     return frozenset(
         without | (set() if study.file.whole_histories else {q.name for q in SAMPLED})
     )
@@ -299,54 +296,11 @@ def lacking(study: Study, case: Case) -> frozenset[str]:
 
 def needs_of(name: str, which: str = "not every") -> str:
     """Needs of a result in a study, in words."""
-    needs = {q.name: NEEDS.get(q.needs, "") for q in OF_HISTORIES}[name]
+    needs = next(q.needed for q in OF_HISTORIES if q.name == name)
     if name in {quantity.name for quantity in SAMPLED}:
         alike = f", and in all systems {needs}" if needs else ""
         return f"{name} needs `whole_histories: true`{alike}"
     return f"{name} needs {needs}, which {which} system of the study has"
-
-
-def _device_with(result: str) -> Callable[[PodiumStructure], bool]:
-    return lambda structure: any(result in device.results for device in structure.devices)
-
-
-HAS: dict[str, Callable[[PodiumStructure], bool]] = {
-    "superstructure": lambda structure: structure.superstructure is not None,
-    "superstructure.storey_height": lambda structure: (
-        structure.superstructure is not None
-        and structure.superstructure.storey_heights is not None
-    ),
-    "superstructure, flat part": lambda structure: structure.static_base_shear > 0.0,
-    "superstructure, devices": lambda structure: bool(
-        structure.storeys and structure.devices
-    ),
-    "superstructure.yield": lambda structure: structure.yields,
-    "superstructure.yield, storey_height": lambda structure: (
-        structure.yields and HAS["superstructure.storey_height"](structure)
-    ),
-    "podium.friction": lambda structure: structure.friction is not None,
-    "rows of columns": lambda structure: (
-        structure.counts_columns
-        and not structure.left_out_of_columns(both=False, axial=False)
-    ),
-    "columns": lambda structure: (
-        structure.counts_columns and not structure.left_out_of_columns(both=False)
-    ),
-    "designed columns": lambda structure: (
-        structure.column is not None and HAS["columns"](structure)
-    ),
-    "columns on arcs": lambda structure: (
-        HAS["designed columns"](structure) and not structure.bearing.is_flat
-    ),
-    "contact": lambda structure: structure.bed is not None,
-    "plane contact": lambda structure: (
-        structure.contact.kind == "plane" and structure.bearing.is_flat
-    ),
-    "damper": _device_with("max_damper_force"),
-    "stop": _device_with("max_stop_force"),
-    "tendon": _device_with("lost_prestress"),
-}
-"""True of structures that have what a result needs, by the names of `NEEDS`."""
 
 
 def _overrides(
@@ -360,9 +314,7 @@ def _overrides(
     ]
     sampled = plan.keys[len(places) :]
     places += [study.document.value_place(("sample", "ranges", key)) for key in sampled]
-    written = [Override(*item) for item in zip(plan.keys, values, places, strict=True)]
-    without = unjudged(dict(zip(plan.keys, values, strict=True)))
-    return written + [Override(limit, None, places[-1]) for limit in without]
+    return [Override(*item) for item in zip(plan.keys, values, places, strict=True)]
 
 
 def _refuse_unfit(

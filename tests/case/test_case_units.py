@@ -44,6 +44,9 @@ FACTORS = {
     "Pa": {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9, "N/mm2": 1e6, "kN/cm2": 1e7},
     "rad": {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180.0},
     "deg": {"deg": 1.0, "rad": 180.0 / math.pi},
+    "1/s": {"1/s": 1.0, "1/ms": 1e3, "1/min": 1.0 / 60.0},
+    "rad/s": {"rad/s": 1.0, "deg/s": math.pi / 180.0, "rpm": math.pi / 30.0},
+    "N s2/m2": {"N s2/m2": 1.0, "kN s2/m2": 1e3},
 }  # fmt: skip
 
 UNUSUAL = {
@@ -137,6 +140,15 @@ def test_unusual_units_are_those_of_pint(unit, written):
 @pytest.mark.parametrize("unit", KINDS)
 def test_units_that_messages_propose_are_common(unit):
     assert set(KINDS[unit][1]) <= set(FACTORS[unit])
+
+
+def test_turns_and_radians_are_not_mixed_up():
+    assert si_value("0.3 1/s", "1/s") == 0.3
+    assert si_value("2 1/min", "1/s") == 2.0 / 60.0
+    assert si_value("3 deg/s", "rad/s") == 3.0 * (math.pi / 180.0)
+    for text, unit in (("1 Hz", "rad/s"), ("2 rpm", "1/s"), ("2 rad/s", "1/s")):
+        with pytest.raises(ValueError, match="counts turns or angles otherwise"):
+            si_value(text, unit)
 
 
 def test_values_at_equal_spaces():

@@ -3,12 +3,14 @@
 import pytest
 
 from rpscli.analyses.result_quantities import LIMITED
+from rpscli.case.case import case_from_mapping
 from rpscli.case.conditions import Condition, conditions_of, parse_condition
+from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import UsageError
 from rpscli.report.limits import bound_text, reached_text, requirement_text
 from rpscli.units import Written
 
-from .conftest import BUILDING, case_of
+from .conftest import BUILDING
 
 WITH_COLUMNS = BUILDING.replace(
     "  profile: sine\n", "  vertical_period: 0.1 s\n  yield: {ratio: 1.3}\n"
@@ -21,9 +23,10 @@ WITH_COLUMNS = BUILDING.replace(
 
 
 def limited(text):
-    """Conditions of a case with these limits."""
+    """Conditions of a case with these limits, whatever it has."""
     changed = WITH_COLUMNS.replace("limits: {rotation_ratio: 0.5}", f"limits: {text}")
-    return conditions_of(case_of(text=changed).limits, "the case")
+    case = case_from_mapping(read_yaml(changed, "c.yaml"), "c.yaml")
+    return conditions_of(case.limits, "the case")
 
 
 def condition(name, at, share=0.0, fractile=None, of=None):

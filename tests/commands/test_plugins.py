@@ -395,7 +395,7 @@ LAWS = {
     "unnamed": "must be a name with a Quantity",
     "ours": "gap must not be a key of rps; rename it",
     "many": "5 constants, at most 4",
-    "lacking": r"missing 2 required positional arguments: 'damping' and 'linear'",
+    "lacking": "missing 1 required positional argument: 'damping'",
     "bounces": "must be DamperLaw",
 }
 LYING = {
@@ -485,8 +485,44 @@ def test_laws_that_lie_are_named(liars, workplace):
         with pytest.raises(PluginError, match=f"{name} of liars 1.0 .*({said})"):
             used(name)
     assert "c_own" in str(schema_of("case"))
-    with pytest.raises(PluginError, match=r"impact law bounces: its restitution is 1\.5"):
+    with pytest.raises(
+        PluginError, match=r"bounces of liars .*: its restitution is 1\.5"
+    ):
         rpscli.load_case("small.yaml", ["podium.impact=bounces"])
+
+
+def test_a_package_is_written_under_a_name_of_its_own(
+    rps, rps_json, workplace, monkeypatch, forgotten
+):
+    """What is written is installed as it stands, and works."""
+    told = rps("init", "--package", "my-dampers").stderr
+    assert "next: pip install -e my-dampers" in told
+    folder = workplace / "my-dampers"
+    assert {each.name for each in folder.iterdir()} == {
+        "pyproject.toml",
+        "README.md",
+        "my_dampers.py",
+    }
+    project = tomllib.loads((folder / "pyproject.toml").read_text("utf-8"))
+    assert project["project"]["name"] == "my-dampers"
+    assert project["tool"]["setuptools"]["py-modules"] == ["my_dampers"]
+    points = project["project"]["entry-points"].items()
+    lines = (
+        f"[{group}]\n" + "".join(f"{k} = {v}\n" for k, v in of.items())
+        for group, of in points
+    )
+    as_installed(workplace / "site", "my-dampers", "".join(lines))
+    monkeypatch.syspath_prepend(workplace / "site")
+    monkeypatch.syspath_prepend(folder)
+    found = rps_json("explain", "plugins")["plugins"]
+    assert {each["package"] for each in found} == {"my-dampers 1.0"}
+    assert not any(each["fault"] for each in found)
+    rps("check", "small.yaml", *WITH_LAWS)
+    (folder / "my_dampers.py").write_text("# mine\n", encoding="utf-8")
+    rps("init", "--package", "my-dampers", exit_code=7, says="my_dampers.py exists")
+    for name in ("json", "rpscli", "../x", "My", "9a", "class", "a--b"):
+        rps("init", "--package", name, exit_code=2, says="small letters")
+    rps("init", "--package", "a", "--study", exit_code=2, says="--package writes files")
 
 
 def test_stored_points_know_the_file_of_a_law(liars, tmp_path, workplace):

@@ -151,9 +151,29 @@ def test_what_a_folder_says_is_checked(rps, path, value, said):
     run.write_text(
         changed(json.loads(run.read_text("utf-8")), path, value), encoding="utf-8"
     )
-    result = rps("report", "old", "-o", "out.html", exit_code=2)
-    assert f"old: holds a run.json of which {said}" in result.stderr
+    result = rps("report", "old", "-o", "out.html", exit_code=3)
+    assert (
+        f"run.json: is no description of a run of rps, or is damaged: {said}"
+        in result.stderr
+    )
     assert not Path("out.html").exists()
+
+
+@pytest.mark.parametrize(
+    ("damaged", "said"),
+    [
+        (b'{"command": ', "the file is no JSON at line 1, column 13"),
+        (b"\xff\xfe\x00", "the file is no text in UTF-8"),
+        (b"[" * 100_000, "the file is nested too deeply"),
+        (b"5", "the file must be a mapping"),
+    ],
+)
+def test_a_damaged_description_is_told_in_words(rps, damaged, said):
+    Path("old").mkdir()
+    Path("old/run.json").write_bytes(damaged)
+    told = rps("report", "old", "-o", "out.html", exit_code=3).stderr
+    assert said in told
+    assert "restore the file" in told
 
 
 @pytest.mark.parametrize(

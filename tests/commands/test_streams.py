@@ -15,7 +15,15 @@ from sweep.small_studies import ROOT, STUDY
 
 from rpscli.commands.record import command as record
 from rpscli.commands.registry import OURS
-from rpscli.commands.shell.terminal import MANY, Terminal, counted, rendered, watched
+from rpscli.commands.shell.terminal import (
+    MANY,
+    Terminal,
+    counted,
+    rendered,
+    report,
+    watched,
+)
+from rpscli.errors import CaseError
 from rpscli.registry import of_tools
 from rpscli.report.table import Table
 
@@ -307,6 +315,41 @@ def test_a_full_disk_behind_the_output_is_named(shell, options):
         result.stderr
         == "error: standard output: cannot be written: No space left on device\n"
     )
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full here")
+def test_an_error_finds_a_full_disk_behind_the_output(shell):
+    """The document of an error has no room: both are told, without a traceback."""
+    result = shell("rps check nosuch.yaml --json > /dev/full")
+    assert result.returncode == 1
+    first, second = result.stderr.splitlines()
+    assert first.startswith("error: nosuch.yaml: there is no such file")
+    assert second == "error: standard output: cannot be written: No space left on device"
+    assert shell("rps check nosuch.yaml 2> /dev/full").returncode == 3
+    assert shell("rps check nosuch.yaml --json > /dev/full 2>&1").returncode == 1
+
+
+def test_a_closed_output_is_named(monkeypatch, capsys):
+    closed = io.StringIO()
+    closed.close()
+    with monkeypatch.context() as changed:
+        changed.setattr(sys, "stdout", closed)
+        assert report(CaseError("a case"), as_json=True) == 1
+    assert "standard output: cannot be written" in capsys.readouterr().err
+
+
+class Silent(Exception):
+    """One that says nothing, and an exit code that is none."""
+
+    exit_code = "three"
+
+    def __str__(self):
+        raise ValueError("no words")
+
+
+def test_an_error_without_words_is_told(capsys):
+    assert report(Silent(), as_json=False) == 1
+    assert "Silent: its text cannot be read: ValueError" in capsys.readouterr().err
 
 
 @pytest.mark.posix

@@ -1,6 +1,7 @@
 """rps timehistory: its files, its numbers, its verdicts."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -8,12 +9,13 @@ import pytest
 from paper_structures import known, needs_compiled_kernels
 from PIL import Image
 
+from rpscli.analyses.result_quantities import LIMITED
 from rpscli.analyses.timehistory import time_history
 from rpscli.case.case import load_case
 from rpscli.records.loading import load_record
 from rpscli.report.figures.history import rotation_figure
 
-from .conftest import columns
+from .conftest import columns, write_case
 
 FOLDER = Path("results/small/timehistory/half_sine_T0.6s_a0.3g")
 FIGURES = {
@@ -435,3 +437,75 @@ def test_pictures_of_both_where_nothing_happens_upright(rps_json, ends):
     found = columns(Path("o/timehistory.csv"))
     (forces,) = (values for name, values in found.items() if "friction_force" in name)
     assert max(abs(float(force)) for force in forces) == pytest.approx(1e4, rel=1e-12)
+
+
+WHOLE = (
+    "podium.plan={length: 12 m}",
+    "podium.columns=4",
+    "podium.column={section: round, modulus: 35 GPa, poisson: 0.2, contact_strength: 40 MPa}",
+    "superstructure.vertical_period=0.1 s",
+)
+KINDS_OF_CASES = {
+    "rigid ends": (),
+    "a rigid frame": (
+        "superstructure={storeys: 0}",
+        (
+            "podium={columns: 4, column_mass: 5 t,"
+            " cap_beam_mass: 200 t, bearing: {semi_diagonal: 1.5, slenderness: 0.15,"
+            " wedge_slenderness: 0.3, curvature_ratio: 0.5}}"
+        ),
+    ),
+    "storeys that yield": ("superstructure.yield={ratio: 1.3}",),
+    "every device": (
+        "podium.columns=4",
+        "podium.friction=0.5",
+        (
+            "podium.devices=[{kind: viscous, coefficient: 1 MN s/m}, {kind: stop, gap: 0.1,"
+            " stiffness: 1 kN/mm}, {kind: tendon, prestress: 10 kN, stiffness: 1 kN/mm}]"
+        ),
+    ),
+    "columns": WHOLE,
+    "flat columns on joints": (
+        *WHOLE,
+        "podium.bearing.wedge_slenderness=0.15",
+        "podium.bearing.curvature_ratio=0",
+        "podium.impact.law=flexible",
+        "podium.contact={kind: plane, period_ratio: 1.2}",
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", KINDS_OF_CASES)
+def test_limits_on_what_a_case_lacks_are_refused_before_it_is_computed(
+    kind, rps, workplace
+):
+    """One list for files and `--fail-on`; what a history has is what the list says."""
+    sets = KINDS_OF_CASES[kind]
+    case = load_case("small.yaml", sets)
+    result = time_history(case.structure, load_record(case.record.source), case.analysis)
+    lacking = [q.name for q in LIMITED if getattr(result, q.name) is None]
+    known = {q.name for q in LIMITED if not q.lacks(case.structure)}
+    # Columns have a force without its overturning moment, which is no bound for it.
+    partial = {"max_column_force", "min_column_force", "friction_ratio"}
+    assert known - partial == {q.name for q in LIMITED} - set(lacking) - partial
+    options = [word for each in sets for word in ("--set", each)]
+    for name in [*sorted(set(lacking) - {"friction_ratio"})[:2], *lacking[-1:]]:
+        limit = ("--set", f"limits.{name}=0.5")
+        said = [
+            rps(command, "small.yaml", *options, *limit, exit_code=3).stderr
+            for command in ("check", "timehistory")
+        ]
+        assert said[0] == said[1]
+        assert f"limits.{name} needs " in said[0]
+        asked = ("--fail-on", f"{name}=0.5")
+        refused = rps("timehistory", "small.yaml", *options, *asked, exit_code=2).stderr
+        assert f"--fail-on: {name} needs" in refused
+
+
+def test_the_line_of_a_limit_is_told(rps, workplace):
+    write_case("limited.yaml", more="limits:\n  full_contact_share: 0.5\n")
+    for command in ("check", "timehistory"):
+        refused = rps(command, "limited.yaml", exit_code=3).stderr
+        assert re.search(
+            r"limited\.yaml:\d+:3: limits\.full_contact_share needs", refused
+        )

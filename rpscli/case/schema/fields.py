@@ -29,8 +29,17 @@ from pydantic import (
 )
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from rpscli.errors import LARGEST, SMALLEST, PluginError, hint, is_number, listed, nearest
-from rpscli.registry import Registry
+from rpscli.errors import (
+    LARGEST,
+    SMALLEST,
+    PluginError,
+    hint,
+    is_number,
+    listed,
+    nearest,
+    told,
+)
+from rpscli.registry import Registry, blaming
 from rpscli.units import KINDS, Written, computed_remedy, si_value
 
 
@@ -110,6 +119,16 @@ class Quantity(Mark):
     words: tuple[str, ...] = ()
     per_storey: bool = False
 
+    def __post_init__(self) -> None:
+        """Refuse a unit that is none of those known."""
+        if self.unit == "-":
+            object.__setattr__(self, "unit", PLAIN)
+        if self.unit not in (known := [PLAIN, *KINDS]):
+            raise ValueError(
+                f"the unit {told(self.unit)[:40]} of a Quantity is not known; known are"
+                f" {listed(known, 'and')}"
+            )
+
     @cached_property
     def _bounds(self) -> dict[str, float]:
         bounds = {name: getattr(self, name) for name in BOUNDS}
@@ -183,7 +202,9 @@ class Quantity(Mark):
         bounds = {BOUNDS[name][2]: bound for name, bound in self._bounds.items()}
         forms: list[dict[str, Any]] = [{"type": "number"} | bounds]
         if self.unit != PLAIN:
-            pattern = r"^\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*[^\d\s].*$"
+            inverse = "(1/)?" if self.unit.startswith("1/") else ""
+            number = r"^\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*"
+            pattern = rf"{number}{inverse}[^\d\s].*$"
             units = f"with unit: {listed(KINDS[self.unit][1])}"
             forms.append({"type": "string", "pattern": pattern, "description": units})
         if self.words:
@@ -382,6 +403,21 @@ class Several:
         )
 
 
+def _blamed(section: type[Section], schema: CoreSchema) -> CoreSchema:
+    """The schema of a section: what validators of another package raise is theirs, but
+    for what pydantic tells at its key.
+    """
+    if section.__module__.startswith("rpscli."):
+        return schema
+    owner = f"{section.__qualname__}, options of {section.__module__}"
+
+    def checked(value: Any, ours: Any) -> object:
+        with blaming(owner, ValueError):
+            return ours(value)
+
+    return core_schema.no_info_wrap_validator_function(checked, schema)
+
+
 @dataclass(frozen=True)
 class OneOf:
     """A mapping that is one of several kinds of section, under its name:
@@ -419,7 +455,7 @@ class OneOf:
 
         before = core_schema.no_info_before_validator_function
         kinds: dict[Any, CoreSchema] = {
-            name: before(inside, handler.generate_schema(section))
+            name: before(inside, _blamed(section, handler.generate_schema(section)))
             for name, section in self.sections.items()
         }
         union = core_schema.tagged_union_schema(kinds, self.name_of)

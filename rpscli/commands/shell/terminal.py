@@ -13,7 +13,13 @@ import re
 import sys
 import traceback
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
+from contextlib import (
+    AbstractContextManager,
+    ExitStack,
+    contextmanager,
+    nullcontext,
+    suppress,
+)
 from dataclasses import dataclass, field
 from pathlib import Path
 from textwrap import wrap
@@ -21,7 +27,15 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TextIO
 
 import click
 
-from rpscli.errors import LimitExceeded, OutputError, RpsError, visible
+from rpscli.errors import (
+    TRACEBACK,
+    LimitExceeded,
+    OutputError,
+    PluginError,
+    RpsError,
+    visible,
+    words_of,
+)
 from rpscli.report.files import failure_document, json_text
 from rpscli.report.table import Heading, Part, Table
 from rpscli.user_cache import VARIABLE
@@ -246,19 +260,17 @@ def emit(text: str, stream: TextIO | None) -> None:
     try:
         stream.write(text.encode(encoding, "replace").decode(encoding))
         stream.flush()
-    except OSError as error:
+    except (OSError, ValueError) as error:  # of a closed stream
         # What is still in the stream's buffer must not fail again when the program ends.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+        with suppress(OSError, ValueError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
         if stream is sys.stdout and not isinstance(error, BrokenPipeError):
-            raise OutputError(
-                f"standard output: cannot be written: {error.strerror}"
-            ) from None
+            reason = getattr(error, "strerror", None) or error
+            raise OutputError(f"standard output: cannot be written: {reason}") from None
 
 
 INTERRUPTED = 130
 INTERNAL = 1
-TRACEBACK = "RPS_TRACEBACK"
-"""Environment variable that asks for the traceback of an internal error."""
 
 
 class Ending(NamedTuple):
@@ -274,7 +286,9 @@ class Ending(NamedTuple):
         hundreds of letters are cut.
         """
         name = type(error).__name__
-        code = getattr(error, "exit_code", INTERNAL)
+        code = INTERNAL
+        if isinstance(error, RpsError | click.ClickException):
+            code = error.exit_code
         if isinstance(error, click.ClickException):
             name = "UsageError"
             text = error.format_message()
@@ -299,7 +313,7 @@ class Ending(NamedTuple):
             last = traceback.extract_tb(error.__traceback__)[-1:]
             where = f" ({Path(last[0].filename).name}:{last[0].lineno})" if last else ""
             text = (
-                f"internal error{where}: {name}: {error}; this is a fault of rps: please"
+                f"internal error{where}: {words_of(error)}; this is a fault of rps: please"
                 f" report it with the traceback that {TRACEBACK}=1 shows"
             )
         # The end of a path says most of it.
@@ -312,10 +326,16 @@ class Ending(NamedTuple):
 def report(error: BaseException, *, as_json: bool) -> int:
     """Say on the streams what went wrong; returns the exit code."""
     ending = Ending.of(error)
-    if as_json:
-        emit(json_text(failure_document(*ending)), sys.stdout)
+    code = ending.code
     emit(_lines(error), sys.stderr)
-    return ending.code
+    if as_json:
+        try:
+            emit(json_text(failure_document(*ending)), sys.stdout)
+        except OutputError as unwritten:
+            if not isinstance(error, OutputError):
+                emit(_lines(unwritten), sys.stderr)
+            code = unwritten.exit_code
+    return code
 
 
 def concluded(document: Mapping[str, Any], error: RpsError | None) -> dict[str, Any]:
@@ -337,7 +357,8 @@ def leave(error: RpsError | None) -> None:
 
 def _lines(error: BaseException) -> str:
     ending = Ending.of(error)
-    if ending.code == INTERNAL and os.environ.get(TRACEBACK):
+    shown = isinstance(error, PluginError)  # where it was raised
+    if ending.code == INTERNAL and os.environ.get(TRACEBACK) and not shown:
         return "".join(traceback.format_exception(error))
     if (
         type(error).__name__ == "NoArgsIsHelpError"

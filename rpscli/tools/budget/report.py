@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.analyses.result_quantities import LIMITED, NEEDS, ResultQuantity
+from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
 from rpscli.case.case import Case
 from rpscli.case.conditions import LIMITS, Condition, case_conditions
 from rpscli.errors import UsageError
@@ -174,7 +174,7 @@ class Budget:
             if quantity:
                 bad[np.isnan(table.columns[name]) & ~table.overturned] = np.nan
                 if limit and np.isnan(bad[0]):
-                    needs = NEEDS.get(quantity.needs, "what the case has not")
+                    needs = quantity.needed or "what the case has not"
                     raise UsageError(f"{limit.source}: {name} needs {needs}")
             sign = Condition(name, 0.0, "").sign
             known = ~np.isnan(bad)

@@ -11,7 +11,7 @@ import click
 from rpscli.commands.inputs import case_heading, read_case
 from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal, announce_compilation, passing_time
-from rpscli.errors import AnalysisError, RecordError, UsageError, listed
+from rpscli.errors import AnalysisError, RecordError, UsageError, beginning, listed
 from rpscli.report.files import heading
 from rpscli.report.table import Heading, Part, Table, shown
 from rpscli.titled_table import TitledTable
@@ -173,18 +173,19 @@ def _column(table: TitledTable, place: int, name: str, unit: str) -> NDArray[Any
     """Numbers of a column in an SI unit; refuse what is none, or far too large."""
     import numpy as np
 
+    from rpscli.titled_table import number_of
     from rpscli.units import si_factor
 
     rule = f"write numbers, in {unit} or another such unit"
     try:
         factor = si_factor(table.titles[place].unit or unit, unit)
-        values = np.array([float(row.cells[place]) for row in table.rows])
-    except (ValueError, IndexError) as error:
+    except ValueError as error:
         raise RecordError(f"{table.source}: column {name}: {error}; {rule}") from None
-    values = values * factor
+    values = factor * np.array([number_of(row.cells[place]) for row in table.rows])
     if (bad := np.flatnonzero(~(np.abs(values) < LARGEST))).size:
         line, cells = table.rows[bad[0]]
-        raise RecordError(f"{table.source}:{line}: column {name}: {cells[place]}; {rule}")
+        found = beginning(cells[place]) if cells[place] else "is empty"
+        raise RecordError(f"{table.source}:{line}: column {name}: {found}; {rule}")
     return values
 
 

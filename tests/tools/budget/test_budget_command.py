@@ -12,7 +12,7 @@ from paper_structures import needs_compiled_kernels
 from rpscli.case.case import load_case
 from rpscli.records.loading import load_components
 from rpscli.tools.budget.command import _values
-from rpscli.tools.budget.report import _ratio
+from rpscli.tools.budget.report import _over
 
 pytestmark = needs_compiled_kernels
 
@@ -168,6 +168,6 @@ def test_a_case_that_overturns_has_no_ratios(workplace, rps):
     rows = [line.split() for line in result.stdout.splitlines()[heads[0] :]]
     as_it_is = next(row for row in rows if "overturned" in row)
     assert as_it_is[as_it_is.index("overturned") + 1] == "-"
-    stood = [_ratio(value, math.inf) for value in (0.1, -1.0, math.inf, math.nan)]
+    stood = [_over(value, math.inf) for value in (0.1, -1.0, math.inf, math.nan)]
     assert stood == ["-"] * 4
-    assert _ratio(0.3, 0.2) == "1.5"
+    assert _over(0.3, 0.2) == "1.5"

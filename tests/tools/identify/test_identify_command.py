@@ -106,6 +106,12 @@ def test_a_longer_period_tells_how_ends_bear(workplace, rps_json):
         (("rocking",), "time [s],rotation [m]\n0,1\n", 3, "column rotation:"),
         (("rocking",), "time [s],rotation [rad]\n0,a\n", 3, "write numbers, in rad"),
         (("rocking",), "time [s],rotation [rad]\n0,0\n1,1\n", 3, "at even times"),
+        (
+            ("rocking",),
+            "time [s],rotation [rad]\n0,0\n1\r,1\n",
+            3,
+            "column time: is empty; write numbers",
+        ),
         (("rocking",), "", 3, "no column `time [s]`"),
         (("ambient",), "time [s],floor_acceleration [g]\n", 2, "no period before uplift"),
         (("rocking",), "time [s],rotation [mrad]\n", 4, "four are needed"),
@@ -119,7 +125,7 @@ def test_a_longer_period_tells_how_ends_bear(workplace, rps_json):
             ("rocking",),
             "time [s],rotation [rad]\n0,0\n1,nan\n",
             3,
-            "csv:3: column rotation: nan",
+            "csv:3: column rotation: 'nan'",
         ),
         (
             ("rocking",),
