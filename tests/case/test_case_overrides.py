@@ -86,7 +86,7 @@ def test_a_fault_of_a_value_is_placed_at_its_override():
             case, "c.yaml", None, {"podium.bearing.slenderness": -0.5}, label="vary"
         )
     start = "vary podium.bearing.slenderness=-0.5: podium.bearing.slenderness = -0.5 must be >= 0"
-    assert str(error.value) == start
+    assert str(error.value).startswith(start)
     message = refusal(BUILDING, overrides=["podium.cap_beam_mass=1"])
     assert message.startswith("--set podium.cap_beam_mass=1: podium.cap_beam_mass and")
     assert "both fix" in message
