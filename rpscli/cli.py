@@ -11,7 +11,7 @@ from typing import Any, NoReturn
 import click
 
 from rpscli.commands.registry import HOMES, KIND, OURS, SECTIONS, of_package, others
-from rpscli.commands.shell import Group
+from rpscli.commands.shell import CommandGroup
 from rpscli.registry import loaded, of_tools, shared_output, summary_of, tools
 from rpscli.version import VERSION
 
@@ -20,7 +20,7 @@ def _lowered(sentence: str) -> str:
     return f"{sentence[:1].lower()}{sentence[1:].rstrip('.')}"
 
 
-class Program(Group):
+class Program(CommandGroup):
     """The program itself: it imports a command when that is used,
     and ends with an exit code.
     """

@@ -48,7 +48,7 @@ from rpscli.errors import (
 from rpscli.machine import available_cores
 from rpscli.report.figures.look import Look
 from rpscli.report.figures.style import drawable_style
-from rpscli.report.files import OutputFolder, Run, require_writable
+from rpscli.report.files import CommandRun, OutputFolder, require_writable
 from rpscli.report.study.collected import Collected
 from rpscli.report.study.registry import REPORTS, lacking, requirement_faults
 from rpscli.report.study.report import Found
@@ -67,8 +67,8 @@ from rpscli.sweep.store import Store
 from rpscli.sweep.systems import Watched, needs_of
 from rpscli.sweep.table import (
     Columns,
+    PointTable,
     StoredPoints,
-    Table,
     array,
     point_columns,
     points_csv,
@@ -228,7 +228,7 @@ class Study(Shown):
         known = Store(place).path.exists()
         return OutputFolder(
             place,
-            Run(command, study.name, file, study.digest, inputs),
+            CommandRun(command, study.name, file, study.digest, inputs),
             force=force or known,
         )
 
@@ -314,7 +314,7 @@ def run_in(
                 known = store.outcomes()
                 stored = sum(key in known for key in begin.keys)
                 raise StudyInterrupted(stored, len(study), store.path) from None
-        table = Table.of(layout, partial(store.results, begin.keys))
+        table = PointTable.of(layout, partial(store.results, begin.keys))
         return StudyResult(
             study, StoredPoints(table, begin.keys, store, jobs), begin, done
         )
@@ -351,7 +351,7 @@ class StudyResult(Shown):
         return self.results.store.path.parent
 
     @property
-    def table(self) -> Table:
+    def table(self) -> PointTable:
         """Results in the study's order."""
         return self.results.table
 

@@ -5,7 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from paper_structures import Array, ground, part
 
-from rpscli.analyses.kernels.history import Request, follow, longest_history, run_of
+from rpscli.analyses.kernels.history import (
+    HistoryRequest,
+    follow,
+    longest_history,
+    run_of,
+)
 from rpscli.analyses.kernels.systems import stacked_systems
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.bearing import Bearing
@@ -142,7 +147,7 @@ def followed(structure, motion, settings=None, turning=0.0, finer=1):
     run = run_of(
         systems,
         [motion],
-        [Request(0, 0)],
+        [HistoryRequest(0, 0)],
         pairs=True,
         rows=rows,
         events=ROOM,

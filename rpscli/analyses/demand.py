@@ -15,8 +15,7 @@ from typing import Any, TypeAlias, overload
 
 import numpy as np
 
-from rpscli.analyses.kernels.history import Request as HistoryRequest
-from rpscli.analyses.kernels.history import follow, refuse_steps, run_of
+from rpscli.analyses.kernels.history import HistoryRequest, follow, refuse_steps, run_of
 from rpscli.analyses.kernels.systems import longest_free_vibration, stacked_systems
 from rpscli.analyses.largest_demands import Demand, Demands
 from rpscli.analyses.settings import TimeHistorySettings, require_inputs
@@ -30,7 +29,7 @@ Motion: TypeAlias = GroundMotion | MotionComponents
 
 
 @dataclass(frozen=True, eq=False)
-class Request:
+class DemandRequest:
     """One history to run: a structure under a motion, all of its
     components times `scale`.
     """
@@ -47,7 +46,7 @@ by one, with the same results. A step of all lanes takes as long as some five of
 
 
 def histories(
-    requests: Sequence[Request], *, worth_lanes: int = WORTH_LANES
+    requests: Sequence[DemandRequest], *, worth_lanes: int = WORTH_LANES
 ) -> Iterator[tuple[list[int], Demands]]:
     """Numbers of requests alike in storeys and contact, and their
     results; without the GIL.
@@ -66,7 +65,7 @@ def histories(
 
 
 def demands(
-    requests: Sequence[Request], *, worth_lanes: int = WORTH_LANES
+    requests: Sequence[DemandRequest], *, worth_lanes: int = WORTH_LANES
 ) -> list[Demand]:
     """Largest demands of each of many histories, in their order; see `histories`."""
     by_number: dict[int, Demand] = {}
@@ -120,24 +119,24 @@ def demand(
     Raises
     ------
     UsageError
-        If `vertical` comes with several motions: `MotionComponents(x,
-        vertical=...)` holds both.
+        If `vertical` comes with several motions.
     """
     if isinstance(record, GroundMotion | MotionComponents) or not isinstance(
         record, Sequence
     ):
         chosen, motion = require_inputs(structure, record, settings, vertical)
-        return demands([Request(structure, motion, chosen)])[0]
+        return demands([DemandRequest(structure, motion, chosen)])[0]
     if vertical is not None:
         raise UsageError(
             "vertical goes with a single record; give MotionComponents(x, vertical=...)"
             " for each"
         )
     inputs = [require_inputs(structure, each, settings, None) for each in record]
-    return demands([Request(structure, motion, chosen) for chosen, motion in inputs])
+    asked = [DemandRequest(structure, motion, chosen) for chosen, motion in inputs]
+    return demands(asked)
 
 
-def _run(requests: Sequence[Request], worth_lanes: int) -> Demands:
+def _run(requests: Sequence[DemandRequest], worth_lanes: int) -> Demands:
     structures, of_structure = _distinct([id(r.structure) for r in requests])
     firsts, of_system = _distinct([(id(r.structure), id(r.settings)) for r in requests])
     shaken, of_motion = _distinct([id(r.motion) for r in requests])

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from rpscli.analyses.column_design import column_demand
 from rpscli.analyses.column_forces import axial_forces
-from rpscli.analyses.demand import Request, demands
+from rpscli.analyses.demand import DemandRequest, demands
 from rpscli.analyses.fixed_base import FixedBaseResponse, fixed_base_response
 from rpscli.analyses.kernels.history import SampledHistory, sampled_history
 from rpscli.analyses.result_quantities import values_of
@@ -167,7 +167,7 @@ def neighbours(result: TimeHistoryResult) -> list[Neighbour]:
             (replace(structure, impact_law=replace(law, loss=OTHER_LOSS)), 1.0, 0.0)
         )
     requests = [
-        Request(of, result.motion.turned(angle), settings, factor)
+        DemandRequest(of, result.motion.turned(angle), settings, factor)
         for of, factor, angle in beside
     ]
     # One by one: the kernel for many at a time would have to be compiled first.

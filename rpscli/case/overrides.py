@@ -18,7 +18,7 @@ from rpscli.case.text.document import (
     Document,
     Fault,
     Path,
-    Place,
+    Position,
     dotted,
     path_of,
     shown,
@@ -33,7 +33,7 @@ class Override(NamedTuple):
 
     key: str
     value: Any
-    place: Place
+    place: Position
 
 
 Overrides = Sequence[str | Override] | Mapping[str, object]
@@ -74,9 +74,9 @@ def _parsed(overrides: Overrides, label: str) -> Iterator[Override]:
         elif isinstance(item, tuple):
             key, value = item
             written = value if isinstance(value, str) else shown(value)
-            yield Override(key, value, Place(f"{label} {key}={written}", rank=rank))
+            yield Override(key, value, Position(f"{label} {key}={written}", rank=rank))
         else:
-            place = Place(f"{label} {item}", rank=rank)
+            place = Position(f"{label} {item}", rank=rank)
             key, sign, text = item.partition("=")
             if not sign or not key.strip():
                 raise CaseError(
@@ -147,7 +147,7 @@ def _obstacle(owner: object, path: Path, part: str | int) -> str:
     return ""
 
 
-def _settle(document: Document, path: Path, place: Place) -> None:
+def _settle(document: Document, path: Path, place: Position) -> None:
     """From now on, everything at and below the path was written by the override."""
     for places in (document.keys, document.values):
         for old in [old for old in places if old[: len(path)] == path]:

@@ -16,7 +16,7 @@ from rpscli.commands.shell.terminal import Terminal, counted, passing_time
 from rpscli.errors import CaseError, RpsError, UsageError, all_made
 from rpscli.registry import loaded, of_tools
 from rpscli.report.figures.look import FilmRequest
-from rpscli.report.files import Drawing, OutputFolder, Run, heading
+from rpscli.report.files import CommandRun, Drawing, OutputFolder, heading
 from rpscli.report.table import Part
 from rpscli.units import as_written
 
@@ -58,7 +58,7 @@ def case_folder(
     out: options.Output,
     command: str,
     *,
-    motion: Motion | None = None,
+    motion: CaseMotion | None = None,
     record_source: Path | str | None = None,
     **inputs: Any,
 ) -> OutputFolder:
@@ -69,7 +69,7 @@ def case_folder(
         record_source = motion_source(case, motion.request)
         resolved["record"] = motion_inputs(motion.ground)
     resolved |= inputs
-    run = Run(command, case.name, given.file, case.digest, resolved, record_source)
+    run = CommandRun(command, case.name, given.file, case.digest, resolved, record_source)
     place = out.place or RESULTS / case.name / command
     return OutputFolder(place, run, force=out.force)
 
@@ -192,7 +192,7 @@ class MotionRequest:
         return [word for option in given for word in option]
 
 
-class Motion(NamedTuple):
+class CaseMotion(NamedTuple):
     """A ground motion as it was asked for, and as it was read."""
 
     request: MotionRequest
@@ -271,9 +271,11 @@ def motion_source(case: Case, request: MotionRequest) -> Path | str:
 
 def load_motions(
     case: Case, requests: Iterable[MotionRequest], fault: type[RpsError] = RpsError
-) -> list[Motion]:
+) -> list[CaseMotion]:
     """All motions; faults of this kind are told together."""
-    return all_made(lambda each: Motion(each, load_motion(case, each)), requests, fault)
+    return all_made(
+        lambda each: CaseMotion(each, load_motion(case, each)), requests, fault
+    )
 
 
 def load_motion(case: Case, request: MotionRequest) -> MotionComponents:

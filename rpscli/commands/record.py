@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from rpscli.commands.inputs import RESULTS, write
-from rpscli.commands.shell import Group
+from rpscli.commands.shell import CommandGroup
 from rpscli.commands.shell.options import (
     FILE,
     Output,
@@ -22,7 +22,7 @@ from rpscli.commands.shell.options import (
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import Refused, UsageError
 from rpscli.registry import loaded, of_tools
-from rpscli.report.files import OutputFolder, Run, encoded, heading, write_whole
+from rpscli.report.files import CommandRun, OutputFolder, encoded, heading, write_whole
 
 if TYPE_CHECKING:
     from rpscli.records.ground_motion import GroundMotion
@@ -32,7 +32,7 @@ FORMATS = {"at2": ".at2", "text": ".txt"}
 """Formats that can be written, and how their files are called."""
 
 
-class RecordCommands(Group):
+class RecordCommands(CommandGroup):
     """Our commands of records, then those of tools."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
@@ -119,7 +119,7 @@ def _folder(
     file = Path(Source.parse(motion.source).place)
     name = f"{motion.name.removesuffix('_x')}_both" if others else motion.name
     inputs |= {"source": motion.source} | ({"y": others[0].digest} if others else {})
-    run = Run(
+    run = CommandRun(
         f"record {command}", name, file if file.is_file() else None, motion.digest, inputs
     )
     return OutputFolder(

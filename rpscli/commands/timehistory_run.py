@@ -86,7 +86,7 @@ class History:
 
     given: inputs.CaseInput
     case_label: str
-    motion: inputs.Motion
+    motion: inputs.CaseMotion
     label: str
     folder: OutputFolder
     floor_spectra: bool = False

@@ -12,7 +12,7 @@ from rpscli.physics.devices.branches import release_devices
 from rpscli.physics.ground import azimuth_of, set_ground
 from rpscli.physics.lane import place_of, set_vector, ways_of
 from rpscli.physics.next_step import plan
-from rpscli.physics.run import Output
+from rpscli.physics.run import KernelOutput
 from rpscli.physics.samples import store_sample
 from rpscli.physics.state import (
     BEDDED,
@@ -91,7 +91,7 @@ def begin_history(
     requests: Record,
     history: int,
     acceleration: Floats,
-    output: Output,
+    output: KernelOutput,
 ) -> None:
     """Load a history into a lane, at rest in full contact or released from a tilt."""
     request = requests[history]

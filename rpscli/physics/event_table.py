@@ -13,7 +13,7 @@ from rpscli.physics import events, switches
 from rpscli.physics.state import CHANGE, HIGH, LET_GO, LOW, NEAREST, YIELD
 
 
-class Event(NamedTuple):
+class EventKind(NamedTuple):
     """A kind of event on which steps end."""
 
     kind: int
@@ -25,11 +25,11 @@ class Event(NamedTuple):
 
 
 EVENTS = (
-    Event(LOW, events.falls_low, events.missing_low, switches.leave_low),
-    Event(HIGH, events.rises_high, events.missing_high, switches.leave_high),
-    Event(NEAREST, events.is_nearest, events.missing_nearest, switches.pass_nearest),
-    Event(LET_GO, events.let_go, events.missing_let_go, switches.lose_hold),
-    Event(CHANGE, events.changes, events.missing_change, switches.change),
-    Event(YIELD, events.yields_first, events.missing_yield, switches.yield_or_end),
+    EventKind(LOW, events.falls_low, events.missing_low, switches.leave_low),
+    EventKind(HIGH, events.rises_high, events.missing_high, switches.leave_high),
+    EventKind(NEAREST, events.is_nearest, events.missing_nearest, switches.pass_nearest),
+    EventKind(LET_GO, events.let_go, events.missing_let_go, switches.lose_hold),
+    EventKind(CHANGE, events.changes, events.missing_change, switches.change),
+    EventKind(YIELD, events.yields_first, events.missing_yield, switches.yield_or_end),
 )
 """In the order in which the first of several at one instant is chosen."""

@@ -33,7 +33,7 @@ from rpscli.physics.landing import resolve_step
 from rpscli.physics.lane import lanes_of, ways_of
 from rpscli.physics.next_step import plan
 from rpscli.physics.rest import REST_EVERY, is_over
-from rpscli.physics.run import Output
+from rpscli.physics.run import KernelOutput
 from rpscli.physics.samples import store_sample, store_within
 from rpscli.physics.standing import stand, stands_exactly
 from rpscli.physics.state import (
@@ -62,7 +62,7 @@ def follow(
     requests: Record,
     acceleration: Floats,
     results: Record,
-    output: Output,
+    output: KernelOutput,
 ) -> None:
     """Follow every history of `requests` from rest, in a state of one
     record; writes `results`.
@@ -95,7 +95,7 @@ def follow_many(
     requests: Record,
     acceleration: Floats,
     results: Record,
-    output: Output,
+    output: KernelOutput,
 ) -> None:
     """Follow histories side by side (`groups`)."""
     moving = state[MOVING]
@@ -130,7 +130,11 @@ def empty(s: Record) -> None:
 
 @compiled
 def begin_histories(
-    state: Record, systems: Record, requests: Record, acceleration: Floats, output: Output
+    state: Record,
+    systems: Record,
+    requests: Record,
+    acceleration: Floats,
+    output: KernelOutput,
 ) -> None:
     """Begin histories as long as there is room, where others stand or wait to."""
     moving = state[MOVING]
@@ -156,7 +160,7 @@ def begin_histories(
 
 @compiled
 def look_after_all(
-    state: Record, k: int, systems: Record, results: Record, output: Output
+    state: Record, k: int, systems: Record, results: Record, output: KernelOutput
 ) -> None:
     """What lanes alone are to do; those whose histories are over,
     or go on otherwise, leave.
@@ -196,7 +200,7 @@ def call_in(state: Record) -> None:
 
 
 @inlined
-def advance(s: Record, systems: Record, output: Output, stands: bool) -> None:
+def advance(s: Record, systems: Record, output: KernelOutput, stands: bool) -> None:
     """A step of all lanes together: of those that stand, or of others."""
     if stands:
         stand(s)
@@ -216,7 +220,7 @@ def advance(s: Record, systems: Record, output: Output, stands: bool) -> None:
 
 
 @compiled
-def book_flows(s: Record, systems: Record, output: Output) -> None:
+def book_flows(s: Record, systems: Record, output: KernelOutput) -> None:
     """Book what flowed in the only lane's step, and keep what lies within it."""
     if s.audited > 0:
         s.energy_input[0] += s.h[0] * s.power_input[0]
@@ -352,7 +356,7 @@ STALL = 100
 
 
 @compiled
-def look_after(s: Record, l: int, systems: Record, output: Output) -> bool:
+def look_after(s: Record, l: int, systems: Record, output: KernelOutput) -> bool:
     """What a lane alone is to do: switch at an event, store, end;
     True if its history is over.
     """

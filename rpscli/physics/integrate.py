@@ -9,14 +9,14 @@ import numpy as np
 
 from rpscli.physics.kernels import kernel
 from rpscli.physics.records import scratch
-from rpscli.physics.run import Run
+from rpscli.physics.run import KernelRun
 from rpscli.physics.state import LANES, Record
 
 HEARS = 0.1
 """A Ctrl-C is heard within so many seconds."""
 
 
-def integrate(run: Run, lanes: int = LANES, *, interruptible: bool = False) -> None:
+def integrate(run: KernelRun, lanes: int = LANES, *, interruptible: bool = False) -> None:
     """Follow every history of `run.requests` from rest; writes `run.results`.
 
     Machine code hears no signal: to be `interruptible` by Ctrl-C it runs in another

@@ -18,7 +18,7 @@ from typing import Any
 from rpscli.errors import OutputError
 from rpscli.physics.interface import EVENT, REQUEST, RESULT, SAMPLE, SYSTEM
 from rpscli.physics.records import record_type
-from rpscli.physics.run import Output
+from rpscli.physics.run import KernelOutput
 from rpscli.physics.state import STATE
 from rpscli.user_cache import VARIABLE, alone_in, is_private, user_cache
 
@@ -118,7 +118,7 @@ def kinds_of_arguments(ways: int, lanes: int) -> tuple[Any, ...]:
     system, request, result, sample, event = (
         ("Rows", record_type(of)) for of in (SYSTEM, REQUEST, RESULT, SAMPLE, EVENT)
     )
-    output = "tuple", (sample, ("Matrix", 3), event, ("Matrix", 3), "i64"), Output
+    output = "tuple", (sample, ("Matrix", 3), event, ("Matrix", 3), "i64"), KernelOutput
     return state, system, request, ("Matrix", 1), result, output
 
 

@@ -24,7 +24,7 @@ from rpscli.physics.laws.motion import (
 )
 from rpscli.physics.laws.place import (
     UPRIGHT,
-    Column,
+    ColumnConstants,
     Ends,
     Place,
     across,
@@ -167,9 +167,9 @@ def phase_of(s: Record, l: int) -> geometry.Phase:
 
 
 @inlined
-def column_of(s: Record, l: int) -> Column:
+def column_of(s: Record, l: int) -> ColumnConstants:
     """Inertia and spin of a lane's columns."""
-    return Column(
+    return ColumnConstants(
         s.io_1[l],
         s.i_3[l],
         s.one[l],

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from rpscli.physics.state import Floats, Record
 
 
-class Output(NamedTuple):
+class KernelOutput(NamedTuple):
     """Samples and events of a history that is run by itself; of many,
     give no rows to keep none.
 
@@ -31,7 +31,7 @@ class Output(NamedTuple):
     )
 
 
-class Run(NamedTuple):
+class KernelRun(NamedTuple):
     """Histories to run, and what they leave behind; all arrays
     of records but the floats.
     """
@@ -42,5 +42,5 @@ class Run(NamedTuple):
         Floats  # records of the ground end to end [m/s2], linear between their samples
     )
     results: Record  # (P,) `interface.RESULT`: written
-    output: Output  # samples and events, where there is one history: written
+    output: KernelOutput  # samples and events, where there is one history: written
     ways: int = 1  # horizontal components: 2 with two systems of each structure

@@ -29,7 +29,7 @@ from rpscli.physics.lane import (
     without_shock,
 )
 from rpscli.physics.quintic import slope, value
-from rpscli.physics.run import Output
+from rpscli.physics.run import KernelOutput
 from rpscli.physics.state import FULL_CONTACT, Record
 from rpscli.physics.storeys import base_slip, free_rows, middle_with, slip_force
 from rpscli.physics.within import mode_path, tilt_within
@@ -39,7 +39,7 @@ PASSED = 1e-9
 
 
 @compiled
-def store_sample(s: Record, l: int, systems: Record, output: Output) -> None:
+def store_sample(s: Record, l: int, systems: Record, output: KernelOutput) -> None:
     """Keep the state at the start of the present interval, if there is room."""
     look_at(s, l)
     row = s.interval[l] * output.finer
@@ -47,7 +47,7 @@ def store_sample(s: Record, l: int, systems: Record, output: Output) -> None:
 
 
 @compiled
-def store_within(s: Record, l: int, systems: Record, output: Output) -> None:
+def store_within(s: Record, l: int, systems: Record, output: KernelOutput) -> None:
     """Keep the states at the even parts of the interval that
     the step just taken passes.
     """
@@ -112,7 +112,7 @@ def write_row(
     s: Record,
     l: int,
     systems: Record,
-    output: Output,
+    output: KernelOutput,
     row: int,
     tilt: Vector,
     rate: Vector,
@@ -225,7 +225,7 @@ def write_floors(
     s: Record,
     l: int,
     system: Record,
-    output: Output,
+    output: KernelOutput,
     row: int,
     axis: int,
     beam: float,

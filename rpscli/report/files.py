@@ -300,7 +300,7 @@ RUN_KINDS = {
 
 
 @dataclass(frozen=True)
-class Run:
+class CommandRun:
     """The subject of a command; one without a file is known by
     the SHA-256 of its text.
     """
@@ -320,7 +320,7 @@ class OutputFolder:
 
     # A later run of the same command on the same file under the same record may replace
     # them, though the file's content or the options have changed.
-    def __init__(self, folder: Path, run: Run, *, force: bool = False) -> None:
+    def __init__(self, folder: Path, run: CommandRun, *, force: bool = False) -> None:
         self.folder = folder
         self.run = run
         self.force = force

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses import result_quantities as rq
-from rpscli.analyses.demand import Request, histories
+from rpscli.analyses.demand import DemandRequest, histories
 from rpscli.analyses.largest_demands import Demands
 from rpscli.analyses.modal import modal
 from rpscli.analyses.outcomes import failure_text, outcomes_of
@@ -195,13 +195,13 @@ class StudyContext:
         factor = factor_to(point.scale, unscaled, measure.measure, point.record.source)
         return factor * point.scale_change
 
-    def history(self, point: Point) -> Request:
+    def history(self, point: Point) -> DemandRequest:
         """The history of a point; its motion is shared, and scaled while it is used."""
         assert point.record is not None, "points of histories have a record"
         system = self.system(point.system, point.values)
         structure = system.perturbed(point.restitution_change)
         motion = self.records.motion(point.record)
-        return Request(structure, motion, system.settings, scale=self.factor(point))
+        return DemandRequest(structure, motion, system.settings, scale=self.factor(point))
 
     def intensities(self, points: Sequence[Point], factors: Array) -> dict[str, Array]:
         """Peaks of the scaled motions of some points, (points,)."""
@@ -361,7 +361,7 @@ def run_batch(context: StudyContext, points: Sequence[Point]) -> PointResults:
     if context.plan.analysis != "timehistory":
         _static(context, points, results)
         return results
-    requests: dict[int, Request] = {}
+    requests: dict[int, DemandRequest] = {}
     for row, point in enumerate(points):
         request = _attempt(context.history, point)
         if isinstance(request, str):
@@ -407,7 +407,7 @@ Run = tuple[list[int], Demands | str, dict[str, Array]]
 what their samples tell."""
 
 
-def _together(requests: list[Request]) -> Iterator[Run]:
+def _together(requests: list[DemandRequest]) -> Iterator[Run]:
     """Histories side by side."""
     every = _attempt(lambda: list(histories(requests)))
     if isinstance(
@@ -421,7 +421,7 @@ def _together(requests: list[Request]) -> Iterator[Run]:
         yield from ((members, ended, {}) for members, ended in every)
 
 
-def _whole(requests: list[Request]) -> Iterator[Run]:
+def _whole(requests: list[DemandRequest]) -> Iterator[Run]:
     """Each by itself, with what its samples tell."""
     for number, request in enumerate(requests):
         whole = _attempt(

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rpscli.case.study.schema import MeasureScale
-from rpscli.case.study.study import Study
+from rpscli.case.study.study import StudyInput
 from rpscli.case.text.document import Fault
 from rpscli.errors import RecordError, RpsError
 from rpscli.model.podium import Array
@@ -63,7 +63,7 @@ class StudyPoints:
     changes of the perturbation.
     """
 
-    study: Study
+    study: StudyInput
     context: StudyContext
     properties: tuple[SystemProperties, ...]
     samples: int
@@ -261,7 +261,7 @@ class StudyPoints:
             return point.scale
 
 
-def lay_out(study: Study, watched: Watched = iter) -> StudyPoints:
+def lay_out(study: StudyInput, watched: Watched = iter) -> StudyPoints:
     """The points of a study, whose systems are all examined."""
     file = study.file
     scale = study.scale

@@ -24,8 +24,8 @@ from rpscli.case.conditions import (
 from rpscli.case.overrides import Override
 from rpscli.case.plausibility import Doubt, doubts_of_directions
 from rpscli.case.study.schema import PerturbSection, RangeSection, SampleSection, Values
-from rpscli.case.study.study import Study
-from rpscli.case.text.document import Fault, Place
+from rpscli.case.study.study import StudyInput
+from rpscli.case.text.document import Fault, Position
 from rpscli.errors import CaseError, RecordError
 from rpscli.model.podium import Array
 from rpscli.records.measures import Of, needs_period
@@ -151,7 +151,7 @@ class SystemProperties(NamedTuple):
 
 
 def examined(
-    study: Study,
+    study: StudyInput,
     context: StudyContext,
     drawn: Array,
     members: Sequence[Change],
@@ -197,7 +197,9 @@ def examined(
     return tuple(properties)
 
 
-def _combinations(study: Study, drawn: Array) -> Iterator[tuple[tuple[int, ...], Values]]:
+def _combinations(
+    study: StudyInput, drawn: Array
+) -> Iterator[tuple[tuple[int, ...], Values]]:
     """Rows of the axes and of the sample of each system, and the values in them."""
     lengths = (*(len(axis.rows) for axis in study.axes), len(drawn))
     for rows in itertools.product(*map(range, lengths)):
@@ -208,7 +210,9 @@ def _combinations(study: Study, drawn: Array) -> Iterator[tuple[tuple[int, ...],
         )
 
 
-def _case_of(study: Study, plan: Plan, values: Values, rows: tuple[int, ...]) -> Case:
+def _case_of(
+    study: StudyInput, plan: Plan, values: Values, rows: tuple[int, ...]
+) -> Case:
     """The case of a system, whose faults are placed at its values in the study."""
     written = _overrides(study, plan, values, rows)
     return case_from_mapping(study.base, plan.base_name, study.base_folder, written)
@@ -234,7 +238,7 @@ def _own_record(case: Case, of: Of | None) -> RecordRequest | None:
 
 
 def _properties(
-    study: Study,
+    study: StudyInput,
     values: Values,
     case: Case,
     digest: bytes,
@@ -270,7 +274,7 @@ def _properties(
     )
 
 
-def _limits(study: Study, case: Case, *, both: bool) -> tuple[Condition, ...]:
+def _limits(study: StudyInput, case: Case, *, both: bool) -> tuple[Condition, ...]:
     """Limits of the study or, where it has none of its own, of the
     case; friction where given.
     """
@@ -286,7 +290,7 @@ def _limits(study: Study, case: Case, *, both: bool) -> tuple[Condition, ...]:
     return with_friction(limits, case.structure)
 
 
-def lacking(study: Study, case: Case) -> frozenset[str]:
+def lacking(study: StudyInput, case: Case) -> frozenset[str]:
     """Names of the results that histories of this case will not have."""
     without = {q.name for q in OF_HISTORIES if q.lacks(case.structure)}
     return frozenset(
@@ -304,10 +308,10 @@ def needs_of(name: str, which: str = "not every") -> str:
 
 
 def _overrides(
-    study: Study, plan: Plan, values: Values, rows: Sequence[int]
+    study: StudyInput, plan: Plan, values: Values, rows: Sequence[int]
 ) -> list[Override]:
     """The values of a system, at the places where the study wrote them."""
-    places: list[Place] = [
+    places: list[Position] = [
         axis.place(key, row)
         for axis, row in zip(study.axes, rows, strict=False)
         for key in range(len(axis.keys))
@@ -318,7 +322,7 @@ def _overrides(
 
 
 def _refuse_unfit(
-    study: Study,
+    study: StudyInput,
     context: StudyContext,
     case: Case,
     members: Sequence[Change],
@@ -335,7 +339,7 @@ def _refuse_unfit(
         raise CaseError(f"both components together: {why}")
 
 
-def _refuse_restitution(study: Study, case: Case, members: Sequence[Change]) -> None:
+def _refuse_restitution(study: StudyInput, case: Case, members: Sequence[Change]) -> None:
     """A perturbed impact must not gain energy by itself."""
     e = case.structure.restitution
     largest = max(change.restitution for change in members)
@@ -348,7 +352,7 @@ def _refuse_restitution(study: Study, case: Case, members: Sequence[Change]) -> 
         study.document.refuse([Fault(("perturb", "restitution"), text)])
 
 
-def _refuse_missing(study: Study, context: StudyContext, case: Case) -> None:
+def _refuse_missing(study: StudyInput, context: StudyContext, case: Case) -> None:
     """Refuse a case that lacks what a point needs besides."""
     if (plan := context.plan).analysis != "timehistory":
         return

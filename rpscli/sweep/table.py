@@ -107,7 +107,7 @@ class Intensity(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Table(Outcomes):
+class PointTable(Outcomes):
     """Outcomes of all points of a study, laid out.
 
     `scale` (points,) are factors on the records, NaN where one is not known; `messages`
@@ -123,7 +123,7 @@ class Table(Outcomes):
     @classmethod
     def of(
         cls, layout: StudyPoints, read: Callable[[Sequence[str]], PointResults]
-    ) -> Table:
+    ) -> PointTable:
         """From what is read of results by their names, in the order of the study."""
         names = SCALARS[layout.plan.analysis]
         stored = read([*names, "scale", STOREY_SHEARS.name])
@@ -263,7 +263,7 @@ def units_of_columns(layout: StudyPoints) -> dict[str, str]:
     return {**names, **scale, "outcome": "-", **results}
 
 
-def points_csv(table: Table) -> Iterator[str]:
+def points_csv(table: PointTable) -> Iterator[str]:
     """The text of `points.csv`, in pieces: one line a point, the same bytes on every run.
 
     Numbers have all their digits; what does not exist is empty.
@@ -309,7 +309,7 @@ def _cell(value: object, unit: str) -> str:
     return NONE if value is None else json.dumps(value)
 
 
-def point_columns(table: Table) -> Columns:
+def point_columns(table: PointTable) -> Columns:
     """(points,) of each column of `points.csv` by name: SI numbers,
     NaN for none, else objects.
     """
@@ -389,7 +389,7 @@ def fixed_base_references(
 class StoredPoints:
     """Points of a study as a table, and the ways to what the store has besides."""
 
-    table: Table
+    table: PointTable
     keys: list[bytes]
     store: Store
     jobs: int

@@ -14,7 +14,7 @@ from paper_structures import (
     waves,
 )
 
-from rpscli.analyses.demand import Request, demand, demands
+from rpscli.analyses.demand import DemandRequest, demand, demands
 from rpscli.analyses.kernels.history import sampled_history
 from rpscli.analyses.largest_demands import Demand, Demands
 from rpscli.analyses.result_quantities import HISTORY, IMPACTS, STOREY_SHEARS
@@ -85,7 +85,7 @@ def ensemble(groups, each, scales=SCALES):
             structure = choices[int(rng.integers(len(choices)))]
             motion, settings = MOTIONS[int(rng.integers(4))], SETTINGS[i % len(SETTINGS)]
             requests.append(
-                Request(structure, motion, settings, float(rng.choice(scales)))
+                DemandRequest(structure, motion, settings, float(rng.choice(scales)))
             )
     # and one whose motion is soon no longer finite, which must not spread
     requests.append(replace(requests[0], scale=2.0**800))
@@ -183,7 +183,9 @@ def test_histories_without_end_are_refused_before_they_begin():
     with pytest.raises(
         CaseError, match=r"must not be more than 1e\+10: the record is too long"
     ):
-        demands([Request(podium(0), MotionComponents(record), TimeHistorySettings())])
+        demands(
+            [DemandRequest(podium(0), MotionComponents(record), TimeHistorySettings())]
+        )
 
 
 def test_a_sequence_of_motions_gives_a_sequence_of_demands():
@@ -208,7 +210,7 @@ def test_who_waits_for_a_lane_keeps_its_bits(pairs):
         RECORDS[0], y=waves(2.5, 0.02, 3.0, seed=45) if pairs else None
     )
     settings = TimeHistorySettings(free_vibration=0.2)
-    requests = [Request(system, motion, settings, float(scale)) for scale in scales]
+    requests = [DemandRequest(system, motion, settings, float(scale)) for scale in scales]
     together = [
         each.history.tobytes() for each in demands(requests, worth_lanes=SIDE_BY_SIDE)
     ]

@@ -22,7 +22,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from rpscli.analyses.demand import Request, demands
+from rpscli.analyses.demand import DemandRequest, demands
 from rpscli.analyses.kernels.history import sampled_history
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.bearing import Bearing
@@ -419,7 +419,7 @@ def contests(building, records, *, heyoka):
     def requests(chosen):
         # without free vibration every history is as long as its record
         settings = TimeHistorySettings(free_vibration=0.0)
-        return [Request(building, MotionComponents(r), settings) for r in chosen]
+        return [DemandRequest(building, MotionComponents(r), settings) for r in chosen]
 
     def sampled(record):
         (request,) = requests([record])
@@ -451,7 +451,9 @@ def rows(storeys, records, *, heyoka):
     building = structure(storeys)
     settings = TimeHistorySettings(free_vibration=0.0, accuracy=TIGHT)
     limit = settings.overturning_limit * building.critical_rotation
-    tight = demands([Request(building, MotionComponents(r), settings) for r in records])
+    tight = demands(
+        [DemandRequest(building, MotionComponents(r), settings) for r in records]
+    )
     exact = [d.max_rotation for d in tight]
     found = [*contests(building, records, heyoka=heyoka)]
     one, lanes = (float(np.sum(c.times)) for c in found[-2:])

@@ -9,7 +9,7 @@ import time
 import click
 import numpy as np
 
-from rpscli.analyses.demand import Request, demands
+from rpscli.analyses.demand import DemandRequest, demands
 from rpscli.case.case import load_case
 from rpscli.records.loading import load_components
 
@@ -70,7 +70,7 @@ def main():
     for _ in range(ROUNDS + 1):  # the first may compile
         for name, of in KINDS.items():
             requests = [
-                Request(of, pair, scale=scale) for pair in pairs for scale in SCALES
+                DemandRequest(of, pair, scale=scale) for pair in pairs for scale in SCALES
             ]
             begin = time.process_time()
             demands(requests)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from paper_structures import ground, podium
 
-from rpscli.analyses.demand import Request, demands
+from rpscli.analyses.demand import DemandRequest, demands
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.contact import Contact
 from rpscli.model.devices import FrictionDamper
@@ -25,11 +25,11 @@ def _compiled():
     for storeys, devices in ((1, ()), (40, ()), (1, (FrictionDamper(1e5),))):
         structure = replace(podium(storeys), devices=devices)
         for worth_lanes in (1, 2):
-            request = Request(structure, MotionComponents(record), settings)
+            request = DemandRequest(structure, MotionComponents(record), settings)
             demands([request], worth_lanes=worth_lanes)
     soft = replace(
         podium(1), impact_law=ImpactLaw(), contact=Contact("plane", period_ratio=1.2)
     )
-    demands([Request(soft, MotionComponents(record), settings)])
+    demands([DemandRequest(soft, MotionComponents(record), settings)])
     both = MotionComponents(record, y=record)
-    demands([Request(replace(podium(1), impact_law=ImpactLaw()), both, settings)])
+    demands([DemandRequest(replace(podium(1), impact_law=ImpactLaw()), both, settings)])

@@ -25,7 +25,7 @@ from hunt.test_random_histories import (
     with_floors_of_its_own,
 )
 from hunt.trials import hunted
-from rpscli.analyses.demand import Request, demands
+from rpscli.analyses.demand import DemandRequest, demands
 from rpscli.analyses.kernels.systems import most_seconds
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.devices import (
@@ -206,8 +206,8 @@ def test_lanes_company_and_order_change_no_bit(random, system, motion, chosen):
     if weaker.contact.period_ratio is not None:
         weaker = system
     scales = [1.0, 0.3, random.uniform(0.1, 2.0), 0.7]
-    requests = [Request(system, motion, chosen, scale) for scale in scales]
-    requests += [Request(weaker, motion, chosen, scale) for scale in scales]
+    requests = [DemandRequest(system, motion, chosen, scale) for scale in scales]
+    requests += [DemandRequest(weaker, motion, chosen, scale) for scale in scales]
     order = random.sample(range(len(requests)), len(requests))
     together = demands(requests, worth_lanes=1)
     mixed = demands([requests[i] for i in order], worth_lanes=1)

@@ -22,7 +22,7 @@ from paper_structures import (
 from paper_structures import podium as paper_podium
 from scipy.optimize import brentq
 
-from rpscli.analyses.demand import Request, demands
+from rpscli.analyses.demand import DemandRequest, demands
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.bearing import Bearing
@@ -283,7 +283,7 @@ def test_twenty_records_on_a_resolved_bed(storeys, factor, overturned, fema_reco
     records = [fema_record(f"farfield/{i}/a") for i in range(1, 21)]
     settings, limit = TimeHistorySettings(), 2.0 * structure.critical_rotation
     found = demands(
-        [Request(structure, MotionComponents(r), settings, factor) for r in records]
+        [DemandRequest(structure, MotionComponents(r), settings, factor) for r in records]
     )
     bed = [
         resolved(

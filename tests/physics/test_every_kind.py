@@ -19,7 +19,7 @@ from paper_structures import (
 )
 from two_components import followed, frame, pair, two_pulses
 
-from rpscli.analyses.demand import Request, demands
+from rpscli.analyses.demand import DemandRequest, demands
 from rpscli.analyses.kernels.history import sampled_history
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
@@ -103,10 +103,10 @@ def test_mirrored_and_in_company(kind, pairs):
     """Bit for bit: a mirrored motion, and a history among others in lanes."""
     motions = [shaken(3 * seed, pairs=pairs) for seed in range(8)]
     motions[7] = shaken(12, pairs=pairs, sign=-1.0)  # of the fourth
-    found = demands([Request(KINDS[kind], motion) for motion in motions])
+    found = demands([DemandRequest(KINDS[kind], motion) for motion in motions])
     assert len({each.max_rotation for each in found}) > 2  # some overturn
     for i in (4, 7):
-        (alone,) = demands([Request(KINDS[kind], motions[i])], worth_lanes=1000)
+        (alone,) = demands([DemandRequest(KINDS[kind], motions[i])], worth_lanes=1000)
         assert alone.history.tobytes() == found[i].history.tobytes()
     one, other = found[4].history, found[7].history
     for name in MIRRORED:

@@ -24,7 +24,7 @@ from paper_structures import (
     waves,
 )
 
-from rpscli.analyses.demand import Request, demands
+from rpscli.analyses.demand import DemandRequest, demands
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import denser_trace, time_history
 from rpscli.constants import STANDARD_GRAVITY
@@ -278,7 +278,8 @@ def test_forces_of_columns_under_recorded_pairs(fema_record):
             made, bearing=replace(made.bearing, inertia_ratio_axial=0.011)
         )
         found = [
-            d.history for d in demands([Request(structure, m, settings) for m in motions])
+            d.history
+            for d in demands([DemandRequest(structure, m, settings) for m in motions])
         ]
         mass = (
             structure.cap_beam_mass

@@ -225,7 +225,7 @@ import hashlib
 from dataclasses import replace
 from random import Random
 from hunt.test_random_histories import motions, settings, structure
-from rpscli.analyses.kernels.history import Request, follow, run_of
+from rpscli.analyses.kernels.history import HistoryRequest, follow, run_of
 from rpscli.analyses.kernels.systems import most_seconds, stacked_systems
 from rpscli.records.ground_motion import MotionComponents
 
@@ -240,7 +240,7 @@ for seed in range(200):
     motion = MotionComponents(record, up)
     if most_seconds(system, chosen, motion) < 0.8:
         systems = stacked_systems([(system, replace(chosen, free_vibration=2.0))])
-        run = run_of(systems, [motion], [Request(0, 0)], rows=20000, events=4000)
+        run = run_of(systems, [motion], [HistoryRequest(0, 0)], rows=20000, events=4000)
         follow(run, lanes=1)
         samples = run.output.samples[: int(run.results[0].intervals) + 1]
         print(seed, hashlib.sha256(run.results.tobytes() + samples.tobytes()).hexdigest())

@@ -8,7 +8,7 @@ import pytest
 from paper_structures import FLAT, needs_compiled_kernels, podium, printed_by, waves
 from two_components import frame, pair, two_pulses
 
-from rpscli.analyses.demand import Request, demands
+from rpscli.analyses.demand import DemandRequest, demands
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.case.schema.fields import Quantity
@@ -172,7 +172,9 @@ def test_steps_end_where_a_law_has_a_kink(name, c):
 
 def numbers(structure, motion, count):
     scales = np.linspace(0.8, 1.4, count)
-    requests = [Request(structure, motion, SETTINGS, float(scale)) for scale in scales]
+    requests = [
+        DemandRequest(structure, motion, SETTINGS, float(scale)) for scale in scales
+    ]
     return [each.history for each in demands(requests)]
 
 
@@ -185,7 +187,9 @@ def test_the_same_bits_alone_and_in_lanes(name):
     together = numbers(own, motion, 40)
     assert len({each["max_theta"] for each in together}) > 30
     for scale, each in list(zip(np.linspace(0.8, 1.4, 40), together, strict=True))[::8]:
-        (alone,) = demands([Request(own, motion, SETTINGS, float(scale))], worth_lanes=2)
+        (alone,) = demands(
+            [DemandRequest(own, motion, SETTINGS, float(scale))], worth_lanes=2
+        )
         assert alone.history["max_theta"] == each["max_theta"]
         assert alone.history["device_energy"][0] == each["device_energy"][0]
 

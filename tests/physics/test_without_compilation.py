@@ -9,7 +9,7 @@ import pytest
 from paper_structures import FLAT, needs_compiled_kernels, podium, printed_by, waves
 from two_components import followed, frame, pair, two_pulses
 
-from rpscli.analyses.kernels.history import Request, run_of
+from rpscli.analyses.kernels.history import HistoryRequest, run_of
 from rpscli.analyses.kernels.systems import stacked_systems
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.devices import (
@@ -51,7 +51,11 @@ STRUCTURES = [
     podium(2, 0.15, FLAT, R=0.4, law=ImpactLaw("flexible")),
     replace(PLAIN, devices=DEVICES, columns=4),
 ]
-REQUESTS = [Request(0, 2), Request(0, 1, scale=0.35), Request(1, 3, scale=0.3)]
+REQUESTS = [
+    HistoryRequest(0, 2),
+    HistoryRequest(0, 1, scale=0.35),
+    HistoryRequest(1, 3, scale=0.3),
+]
 ROWS = 256
 
 
@@ -74,7 +78,7 @@ def demands_of_all(run):
 
 def sampled_history():
     """One with devices, with its samples and events."""
-    run = integrated([Request(2, 0)], lanes=1, rows=ROWS)
+    run = integrated([HistoryRequest(2, 0)], lanes=1, rows=ROWS)
     kept = int(run.results.intervals[0]) + 1
     samples, log = (
         run.output.samples[:kept],

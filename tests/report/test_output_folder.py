@@ -19,7 +19,7 @@ from rpscli.case.case import load_case
 from rpscli.errors import OutputError, Refused, RpsError
 from rpscli.report import table
 from rpscli.report.figures import floors, style
-from rpscli.report.files import Drawing, OutputFolder, Run, json_text, write_whole
+from rpscli.report.files import CommandRun, Drawing, OutputFolder, json_text, write_whole
 from rpscli.report.study.fragility import LimitState
 from rpscli.report.study.report import add_notes, label, with_band
 from rpscli.report.table import Column, Table, csv_text, records
@@ -27,7 +27,7 @@ from rpscli.report.table import Column, Table, csv_text, records
 
 def folder_of(place, digest="a", *, force=False, **inputs):
     return OutputFolder(
-        place, Run("modal", "x", place / "../x.yaml", digest, inputs), force=force
+        place, CommandRun("modal", "x", place / "../x.yaml", digest, inputs), force=force
     )
 
 

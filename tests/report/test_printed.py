@@ -33,7 +33,7 @@ from rpscli.report.figures.structure import draw_structure
 from rpscli.report.files import Drawing
 from rpscli.report.motions import record_files
 from rpscli.report.study.heights import Floors, floor_spectra_figure
-from rpscli.tools.budget.report import Budget, Row
+from rpscli.tools.budget.report import Budget, BudgetRow
 from rpscli.tools.design.report import region_figure, requirements_figure
 from rpscli.tools.selection.figure import selection_figure
 
@@ -272,7 +272,7 @@ def test_a_budget_can_be_read(columns):
     case, values = rpscli.load_case(SIX), {quantity.name: 1.0 for quantity in LIMITED}
     change = "superstructure.damping.ratio 0.03 in place of 0.05, and of all that follows from it"
     rows = [
-        Row(
+        BudgetRow(
             "damping",
             change,
             "",

@@ -18,7 +18,7 @@ from rpscli.sweep.evaluation import (
     stacked,
 )
 from rpscli.sweep.points import lay_out
-from rpscli.sweep.table import Table
+from rpscli.sweep.table import PointTable
 
 ROOT = Path(__file__).parents[2]
 FOLDER = Path("results/study/sweep")
@@ -135,7 +135,7 @@ def made(make, answer, *changes, text=STUDY, fixed=None):
     """Results, as reports take them, of 2 slendernesses x 3 curvatures x 3 records x 2 scales."""
     layout = lay_out(make(text, *changes))
     read = reader(answer(place(layout, number)) for number in range(len(layout)))
-    table = Table.of(layout, read)
+    table = PointTable.of(layout, read)
     return SimpleNamespace(
         table=table, context=layout.context, stored=read, fixed_base=fixed
     )

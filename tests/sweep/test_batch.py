@@ -15,7 +15,7 @@ from paper_structures import (
 )
 from pydantic import ValidationError
 
-from rpscli.analyses.demand import Request, demands, histories
+from rpscli.analyses.demand import DemandRequest, demands, histories
 from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
 from rpscli.analyses.result_quantities import SAMPLED
@@ -329,7 +329,7 @@ class Points:
     def history(self, number):
         motion = self.chaotic if number % 4 == 2 else stillness(1.0)
         settings = TimeHistorySettings(free_vibration=1.0)
-        return Request(self.structure, MotionComponents(motion), settings)
+        return DemandRequest(self.structure, MotionComponents(motion), settings)
 
 
 def notes(points):

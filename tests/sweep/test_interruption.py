@@ -36,7 +36,7 @@ from rpscli.sweep.evaluation import (
 from rpscli.sweep.points import lay_out, reproduction
 from rpscli.sweep.run import Engine, compute, run, start
 from rpscli.sweep.store import FILE, Store
-from rpscli.sweep.table import Table, points_csv
+from rpscli.sweep.table import PointTable, points_csv
 from sweep.small_studies import BASE, FOLDER, STUDY, csv_rows
 
 POINTS = 36
@@ -492,7 +492,7 @@ def test_a_killed_worker_changes_no_byte(study_of, workplace, distributed, sched
             engine = Engine(layout.context, 1, address)
             finish = run(layout, begin, store, engine, kill_one)
             assert (finish.computed, finish.failed) == (len(layout), 0)
-            table = Table.of(layout, partial(store.results, begin.keys))
+            table = PointTable.of(layout, partial(store.results, begin.keys))
             texts.append("".join(points_csv(table)))
     assert killed
     assert texts[0] == texts[1]

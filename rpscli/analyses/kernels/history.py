@@ -25,7 +25,7 @@ from rpscli.errors import CaseError
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.interface import EVENT, REQUEST, RESULT, SAMPLE
 from rpscli.physics.records import record_type, records
-from rpscli.physics.run import Output, Run
+from rpscli.physics.run import KernelOutput, KernelRun
 from rpscli.physics.state import LANES, NO_RECORD, Record
 from rpscli.records.ground_motion import MotionComponents
 
@@ -43,7 +43,7 @@ FIRST_LOG = 4096
 """Rows of the event log at the first attempt; a longer history is run once more."""
 
 
-class Request(NamedTuple):
+class HistoryRequest(NamedTuple):
     """A history to run: numbers of its structure and its motion
     among all, and a factor.
     """
@@ -56,13 +56,13 @@ class Request(NamedTuple):
 def run_of(
     systems: Record,
     motions: Sequence[MotionComponents],
-    requests: Sequence[Request],
+    requests: Sequence[HistoryRequest],
     *,
     pairs: bool = False,
     rows: int = 0,
     events: int = 0,
     finer: int = 1,
-) -> Run:
+) -> KernelRun:
     """Input of the kernel, with room for results, and rows and
     events of the first history.
 
@@ -73,12 +73,12 @@ def run_of(
     n = int(first["n"][0])
     devices = int(first["devices"].max())
     samples = [motion.samples.ravel() for motion in motions]
-    return Run(
+    return KernelRun(
         systems=systems,
         requests=_request_records(motions, requests),
         acceleration=np.concatenate(samples),
         results=np.zeros(len(requests), record_type(RESULT)).view(np.recarray),
-        output=Output(
+        output=KernelOutput(
             samples=records(SAMPLE, rows),
             floors=np.empty((rows, 4, n * int(first["axes"][0]) if rows else 0)),
             log=records(EVENT, events),
@@ -90,7 +90,7 @@ def run_of(
 
 
 def _request_records(
-    motions: Sequence[MotionComponents], requests: Sequence[Request]
+    motions: Sequence[MotionComponents], requests: Sequence[HistoryRequest]
 ) -> Record:
     """Requests as the kernel reads them, with places in the samples
     of all motions one behind the other.
@@ -113,7 +113,7 @@ def _request_records(
     return given.view(np.recarray)
 
 
-def follow(run: Run, lanes: int, *, interruptible: bool = False) -> None:
+def follow(run: KernelRun, lanes: int, *, interruptible: bool = False) -> None:
     """Follow every history of a run, of one component or of
     pairs; writes `run.results`.
     """
@@ -217,7 +217,7 @@ def sampled_history(
         run = run_of(
             systems,
             [motion],
-            [Request(0, 0)],
+            [HistoryRequest(0, 0)],
             pairs=pairs,
             rows=rows,
             events=events,

@@ -46,7 +46,7 @@ from rpscli.case.schema.scale_to import (
     measured_value,
 )
 from rpscli.case.study.tool_key import TOOL_KEYS
-from rpscli.case.text.document import Place, shown
+from rpscli.case.text.document import Position, shown
 from rpscli.errors import LARGEST, is_number
 from rpscli.records.measures import Of
 from rpscli.records.recordings import By
@@ -118,7 +118,7 @@ class Axis:
 
     keys: tuple[str, ...]
     rows: tuple[Values, ...]
-    places: tuple[tuple[Place, ...], ...]
+    places: tuple[tuple[Position, ...], ...]
     of_designs: bool = False
 
     @property
@@ -129,7 +129,7 @@ class Axis:
         twice = len({repr(row[0]) for row in self.rows}) < len(self.rows)
         return self.keys if twice or self.of_designs else self.keys[:1]
 
-    def place(self, key: int, row: int) -> Place:
+    def place(self, key: int, row: int) -> Position:
         """Position of a value in the file."""
         places = self.places[key]
         return places[row] if len(places) == len(self.rows) else places[0]

@@ -66,7 +66,7 @@ DIGITS = 6
 
 
 @dataclass(frozen=True, eq=False)
-class Study:
+class StudyInput:
     """Many points from one case."""
 
     name: str
@@ -113,7 +113,7 @@ def parse_study(
     kinds: Registry[Any],
     folder: Folder | None = None,
     overrides: Sequence[str] = (),
-) -> Study:
+) -> StudyInput:
     """A study from its text."""
     document = read_yaml(text, name)
     if (kind := format_of(document)) == "case":
@@ -155,7 +155,7 @@ def study_of(
     kinds: Registry[Any] | None = None,
     folder: Folder,
     digest: str,
-) -> Study:
+) -> StudyInput:
     """A study from its document, as `parse_study` says; one of a
     design asks for no reports.
     """
@@ -173,7 +173,7 @@ def study_of(
     document.refuse(_report_faults(document, file, axes, reports, asked))
     document.refuse(_size_faults(file, axes, sources))
     base, base_file = _base(document, folder)
-    return Study(
+    return StudyInput(
         name=stem_of(Folder(document.name.strip("<>"))) or "study",
         source=document.name,
         folder=folder,

@@ -23,7 +23,7 @@ def _cut(override: str) -> str:
 
 
 @dataclass(frozen=True)
-class Place:
+class Position:
     """Position of a key or a value; files have rank 0,
     overrides follow in their order.
     """
@@ -56,7 +56,7 @@ class Fault:
     path: Path
     text: str
     at_key: bool = False
-    place: Place | None = None
+    place: Position | None = None
 
 
 def dotted(path: Path) -> str:
@@ -101,8 +101,8 @@ class Document:
 
     name: str
     content: dict[str, Any]
-    keys: dict[Path, Place] = field(default_factory=dict)
-    values: dict[Path, Place] = field(default_factory=dict)
+    keys: dict[Path, Position] = field(default_factory=dict)
+    values: dict[Path, Position] = field(default_factory=dict)
     faults: tuple[Fault, ...] = ()
 
     def at(self, path: Path) -> Any:
@@ -123,22 +123,22 @@ class Document:
         """True if a value is written at a path."""
         return self.at(path) is not MISSING
 
-    def key_place(self, path: Path) -> Place:
+    def key_place(self, path: Path) -> Position:
         """Position of the key of a path; its nearest parent's, if it has none itself."""
         return self._place(path, self.keys)
 
-    def value_place(self, path: Path) -> Place:
+    def value_place(self, path: Path) -> Position:
         """Position of the value of a path; its nearest
         parent's, if it has none itself.
         """
         return self._place(path, self.values)
 
-    def _place(self, path: Path, places: Mapping[Path, Place]) -> Place:
+    def _place(self, path: Path, places: Mapping[Path, Position]) -> Position:
         if path in places:
             return places[path]
         parents = (path[:length] for length in range(len(path) - 1, -1, -1))
         known = (self.keys.get(parent) or self.values.get(parent) for parent in parents)
-        return next((place for place in known if place), Place(self.name))
+        return next((place for place in known if place), Position(self.name))
 
     def where(self, path: Path) -> str:
         """A second place for a message, in brackets: `` (line 14)``; empty if unknown."""
@@ -148,7 +148,7 @@ class Document:
         """The mapping at a path as a document of its own, positions kept."""
         depth = len(path)
 
-        def below(places: Mapping[Path, Place]) -> dict[Path, Place]:
+        def below(places: Mapping[Path, Position]) -> dict[Path, Position]:
             return {p[depth:]: place for p, place in places.items() if p[:depth] == path}
 
         inside = [fault for fault in self.faults if fault.path[:depth] == path]

@@ -12,7 +12,7 @@ from typing import Any
 import yaml
 from yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
-from rpscli.case.text.document import Document, Fault, Path, Place, dotted, shown
+from rpscli.case.text.document import Document, Fault, Path, Position, dotted, shown
 from rpscli.errors import CaseError
 
 REMEDIES = {
@@ -189,14 +189,14 @@ class _Reader:
 
     name: str
     text: str
-    keys: dict[Path, Place] = field(default_factory=dict)
-    values: dict[Path, Place] = field(default_factory=dict)
+    keys: dict[Path, Position] = field(default_factory=dict)
+    values: dict[Path, Position] = field(default_factory=dict)
     faults: list[Fault] = field(default_factory=list)
     open_nodes: list[Node] = field(default_factory=list)
     count: int = 0
 
-    def place(self, node: Node) -> Place:
-        return Place(self.name, node.start_mark.line + 1, node.start_mark.column + 1)
+    def place(self, node: Node) -> Position:
+        return Position(self.name, node.start_mark.line + 1, node.start_mark.column + 1)
 
     def value(self, node: Node, path: Path) -> Any:
         place = self.values[path] = self.place(node)

@@ -9,7 +9,7 @@ import click
 from rpscli.errors import hint
 
 
-class Group(click.Group):
+class CommandGroup(click.Group):
     """Commands in the order in which they were given; an unknown one
     is told the nearest name.
     """

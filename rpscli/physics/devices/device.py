@@ -76,7 +76,7 @@ def set_apart(s: Record, l: int, i: int) -> None:
     s.branched[l] = 1.0
 
 
-class Device(NamedTuple):
+class DeviceLaw(NamedTuple):
     """A kind of device. What is a sum of its lane is said in `load`."""
 
     kind: int

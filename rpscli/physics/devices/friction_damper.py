@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rpscli.physics.compile import compiled
-from rpscli.physics.devices.device import Device, set_kink, speed_of
+from rpscli.physics.devices.device import DeviceLaw, set_kink, speed_of
 from rpscli.physics.devices.worked import Worked
 from rpscli.physics.state import FRICTION, FRICTION_FORCE, Record
 
@@ -23,4 +23,4 @@ def at(s: Record, l: int, i: int, at: Worked) -> tuple[float, float, float]:
     return s.direction[l] * s.law[i, FRICTION_FORCE, l], speed_of(s, at), at.path
 
 
-DEVICE = Device(FRICTION, load, at)
+DEVICE = DeviceLaw(FRICTION, load, at)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rpscli.physics.compile import compiled, own_law
-from rpscli.physics.devices.device import Device, set_apart, speed_of
+from rpscli.physics.devices.device import DeviceLaw, set_apart, speed_of
 from rpscli.physics.devices.worked import Worked, worked
 from rpscli.physics.energy import path_at
 from rpscli.physics.lane import place_of, rate_of, tilt_of
@@ -86,7 +86,7 @@ def at(s: Record, l: int, i: int, at: Worked) -> tuple[float, float, float]:
     return drag(s, l, i, at.path, abs(speed)) * speed, speed, at.path
 
 
-DEVICE = Device(OWN, load, at, drag=drag, power=power, watched=watched, change=change)
+DEVICE = DeviceLaw(OWN, load, at, drag=drag, power=power, watched=watched, change=change)
 
 
 @compiled

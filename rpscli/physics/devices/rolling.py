@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rpscli.physics.compile import compiled
-from rpscli.physics.devices.device import Device, set_kink, speed_of
+from rpscli.physics.devices.device import DeviceLaw, set_kink, speed_of
 from rpscli.physics.devices.worked import Worked
 from rpscli.physics.state import ROLLING_MOMENT, ROLLING_RESISTANCE, Record
 
@@ -24,4 +24,4 @@ def at(s: Record, l: int, i: int, at: Worked) -> tuple[float, float, float]:
     return moment / (s.diameter[l] * at.C), speed_of(s, at), at.path
 
 
-DEVICE = Device(ROLLING_RESISTANCE, load, at)
+DEVICE = DeviceLaw(ROLLING_RESISTANCE, load, at)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rpscli.physics.compile import compiled
-from rpscli.physics.devices.device import Device, set_apart
+from rpscli.physics.devices.device import DeviceLaw, set_apart
 from rpscli.physics.devices.worked import Worked
 from rpscli.physics.energy import path_at
 from rpscli.physics.ground import log_event
@@ -101,7 +101,7 @@ def at(s: Record, l: int, i: int, at: Worked) -> tuple[float, float, float]:
     return resistance(s, l, i, at.path, at.along), at.along, at.path
 
 
-DEVICE = Device(
+DEVICE = DeviceLaw(
     STOP,
     load,
     at,

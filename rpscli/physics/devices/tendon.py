@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.compile import compiled
-from rpscli.physics.devices.device import Device, set_apart
+from rpscli.physics.devices.device import DeviceLaw, set_apart
 from rpscli.physics.devices.worked import Worked, tendon_elongation, worked
 from rpscli.physics.lane import tilt_of
 from rpscli.physics.state import (
@@ -101,7 +101,7 @@ def at(s: Record, l: int, i: int, at: Worked) -> tuple[float, float, float]:
     return tension(s, l, i, at.e), at.lever * at.tilt.p, at.e
 
 
-DEVICE = Device(
+DEVICE = DeviceLaw(
     TENDON,
     load,
     at,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rpscli.physics.compile import compiled
-from rpscli.physics.devices.device import Device, is_apart, set_apart, speed_of
+from rpscli.physics.devices.device import DeviceLaw, is_apart, set_apart, speed_of
 from rpscli.physics.devices.worked import Worked
 from rpscli.physics.laws.place import length
 from rpscli.physics.state import DAMPER_COEFFICIENT, DAMPER_EXPONENT, VISCOUS, Record
@@ -46,4 +46,4 @@ def at(s: Record, l: int, i: int, at: Worked) -> tuple[float, float, float]:
     return drag(s, l, i, at.path, abs(speed)) * speed, speed, at.path
 
 
-DEVICE = Device(VISCOUS, load, at, drag=drag, power=power)
+DEVICE = DeviceLaw(VISCOUS, load, at, drag=drag, power=power)

@@ -63,7 +63,7 @@ def turned(n: float, t: float, out: float, aside: float) -> tuple[float, float]:
     return out * n - aside * t, out * t + aside * n
 
 
-class Column(NamedTuple):
+class ColumnConstants(NamedTuple):
     """Inertia of columns and what they carry, over N m_c R^2, and the
     spin of a column's ends.
     """
@@ -116,7 +116,7 @@ UPRIGHT = 1e-30
 
 @inlined
 def place_in_plane(
-    column: Column,
+    column: ColumnConstants,
     phase: Phase,
     root: float,
     sine: float,
@@ -137,7 +137,9 @@ def place_in_plane(
 
 
 @inlined
-def spun(column: Column, sine: float, less: float, excess: float) -> tuple[float, float]:
+def spun(
+    column: ColumnConstants, sine: float, less: float, excess: float
+) -> tuple[float, float]:
     """G and its slope: how columns spin as the tilt goes round (13.1)."""
     base = column.sin_a + column.spin * (sine if column.rolls else column.sin_beta)
     more = column.spin * (excess if column.rolls else column.excess_beta)
@@ -148,7 +150,7 @@ def spun(column: Column, sine: float, less: float, excess: float) -> tuple[float
 
 @inlined
 def place_in_space(
-    column: Column, phase: Phase, ends: Ends, x: float, w: float, dw: float
+    column: ColumnConstants, phase: Phase, ends: Ends, x: float, w: float, dw: float
 ) -> Place:
     """A tilt to any side."""
     sine, less, excess = sines(x)

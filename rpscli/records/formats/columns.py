@@ -36,7 +36,7 @@ from rpscli.records.formats.titles import (
     COUNT,
     TIME,
     UNKNOWN,
-    Title,
+    ColumnTitle,
     beside_each_other,
     title_of,
 )
@@ -109,7 +109,9 @@ def read_columns(text: RecordText) -> GroundMotion:
     titles = _titles(text, table, width)
     if even and width > 2 and text.channel and not titles:  # by their places
         line = int(table.lines[0])
-        titles = [Title("time" if i == 0 else f"{i + 1}", "", line) for i in range(width)]
+        titles = [
+            ColumnTitle("time" if i == 0 else f"{i + 1}", "", line) for i in range(width)
+        ]
     _refuse_other_quantities(text, table, titles)
     if even and width > 1 and (width == 2 or titles):
         return _columns(text, table, titles)
@@ -174,7 +176,7 @@ def _is_comment(line: str) -> bool:
     return line.lstrip().startswith(("#", "%", "!", "//", "*", "|"))
 
 
-def _titles(text: RecordText, table: _Table, width: int) -> list[Title]:
+def _titles(text: RecordText, table: _Table, width: int) -> list[ColumnTitle]:
     """What the user says of the columns, else the last line that has a title for each;
     empty without one.
     """
@@ -205,11 +207,12 @@ def _titles(text: RecordText, table: _Table, width: int) -> list[Title]:
         "time" if re.fullmatch("m?s(?:ec)?", unit) else "acceleration" for unit in units
     ]
     return [
-        Title(*each, table.header[-1].line) for each in zip(names, units, strict=True)
+        ColumnTitle(*each, table.header[-1].line)
+        for each in zip(names, units, strict=True)
     ]
 
 
-def _titles_behind_a_key(table: _Table, width: int) -> list[Title]:
+def _titles_behind_a_key(table: _Table, width: int) -> list[ColumnTitle]:
     """Titles behind a key, as in `DataSequence: Time U(+); N(+); E(+)`, if all of them
     are understood.
     """
@@ -231,7 +234,7 @@ def _cells(line: str, separator: str) -> list[str]:
     return cells if all(cells) else []
 
 
-def _are_titles(titles: list[Title], *, above: bool, apart: bool) -> bool:
+def _are_titles(titles: list[ColumnTitle], *, above: bool, apart: bool) -> bool:
     """True if a line of words is one of titles: by what they say, or where they stand.
 
     Words right `above` the numbers are titles if something other than a single blank is
@@ -243,7 +246,7 @@ def _are_titles(titles: list[Title], *, above: bool, apart: bool) -> bool:
     return (above and (apart or len(titles) > 2)) or len(known) > 1 or TIME in known
 
 
-def _titles_given(text: RecordText, columns: str, width: int) -> list[Title]:
+def _titles_given(text: RecordText, columns: str, width: int) -> list[ColumnTitle]:
     """Titles that the user gives in place of those of the file."""
     titles = [title_of(cell, 0) for cell in columns.split(",")]
     if len(titles) != width:
@@ -377,7 +380,7 @@ def _refuse_without_rows(text: RecordText, rows: _Rows) -> NoReturn:
     )
 
 
-def _columns(text: RecordText, table: _Table, titles: list[Title]) -> GroundMotion:
+def _columns(text: RecordText, table: _Table, titles: list[ColumnTitle]) -> GroundMotion:
     """One of several columns, with the times of another."""
     width = int(table.widths[0])
     values = table.values.reshape(-1, width)
@@ -415,7 +418,7 @@ def _timed(
     stated: Stated,
     times: Array,
     place: int,
-    titles: list[Title],
+    titles: list[ColumnTitle],
 ) -> tuple[Stated, list[str]]:
     """The step of a column of times, and what is to be said of them."""
     numerals = (numerals_in(_plain(text.lines[line]))[place] for line in table.lines)
@@ -474,7 +477,7 @@ def _wrapped(text: RecordText, table: _Table) -> str:
     return f"rows of {width} numbers were read one after the other"
 
 
-def _stated(text: RecordText, table: _Table, title: Title | None) -> Stated:
+def _stated(text: RecordText, table: _Table, title: ColumnTitle | None) -> Stated:
     """Statements of the header and of the title; two units, or steps, are refused."""
     lines = [(of.line, of.value) for of in table.header]
     units = statements("units", _UNITS_KEY, lines)
@@ -500,7 +503,7 @@ COLUMNS = "?columns=time,acceleration [g]"
 
 
 def _refuse_other_quantities(
-    text: RecordText, table: _Table, titles: list[Title]
+    text: RecordText, table: _Table, titles: list[ColumnTitle]
 ) -> None:
     """Refuse columns of other quantities, and titles that are not understood."""
     kinds = [title.kind for title in titles]
@@ -531,12 +534,14 @@ def _refuse_other_series(text: RecordText, table: _Table) -> None:
                 )
 
 
-def _lacks_time(titles: list[Title], kinds: list[str]) -> bool:
+def _lacks_time(titles: list[ColumnTitle], kinds: list[str]) -> bool:
     """True of two columns of which one is no acceleration, no time and no count."""
     return len(titles) == 2 and not {*kinds} <= {TIME, ACCELERATION, COUNT}
 
 
-def _refuse_titles(text: RecordText, titles: list[Title], kinds: list[str]) -> NoReturn:
+def _refuse_titles(
+    text: RecordText, titles: list[ColumnTitle], kinds: list[str]
+) -> NoReturn:
     """Say what was understood of titles, what not, and what to write."""
     said = [
         f"{title.name[:30] or title.unit!r} is {kind or 'not understood'}"

@@ -68,7 +68,7 @@ ACROSS = "trans"
 """In place of a unit: T beside L and V is the transverse direction, not a period."""
 
 
-class Title(NamedTuple):
+class ColumnTitle(NamedTuple):
     """The title of a column: its name, its unit, empty without one, and its line."""
 
     name: str
@@ -119,18 +119,18 @@ class Title(NamedTuple):
         return COUNT if counts else UNKNOWN
 
 
-def title_of(cell: str, line: int) -> Title:
+def title_of(cell: str, line: int) -> ColumnTitle:
     """A title from its cell: a unit in brackets, behind `in`, a blank or `_`."""
     text = cell.strip()
     text = re.sub(r"\s*[(\[][+-][)\]]", "", text)  # N(+): the positive direction
     if match := _BRACKETED.fullmatch(text):
-        return Title(match[1].strip(), _unit(match[2]), line)
+        return ColumnTitle(match[1].strip(), _unit(match[2]), line)
     if not _GROUND.fullmatch(text) and (match := _BEHIND.fullmatch(text)):
-        return Title(match[1].strip(" _"), _unit(match[2]), line)
-    return Title(text, "", line)
+        return ColumnTitle(match[1].strip(" _"), _unit(match[2]), line)
+    return ColumnTitle(text, "", line)
 
 
-def beside_each_other(titles: list[Title]) -> list[Title]:
+def beside_each_other(titles: list[ColumnTitle]) -> list[ColumnTitle]:
     """Titles of one line: T is transverse where L or V stands beside it, and no time."""
     names = {title.name for title in titles}
     if not {"L", "V"} & names or any(title.kind == TIME for title in titles):

@@ -19,7 +19,7 @@ from rpscli.report.table import Heading, Part, columns_of, csv_text
 from rpscli.sweep.points import StudyPoints, reproduction
 from rpscli.sweep.statistics.summary import Summary, scale_notes, step_notes
 from rpscli.sweep.statistics.verdicts import Verdict, rate_notes
-from rpscli.sweep.table import StoredPoints, Table
+from rpscli.sweep.table import PointTable, StoredPoints
 
 if TYPE_CHECKING:
     from rpscli.case.study.reports import ReportRequest
@@ -70,7 +70,7 @@ class Collected:
 
     def add_statistics(
         self,
-        table: Table,
+        table: PointTable,
         summary: Summary,
         judgements: Sequence[Verdict],
         conditions: Iterable[Condition],

@@ -34,7 +34,14 @@ from rpscli.sweep.statistics.fractiles import CONFIDENCE, Share, share_of
 from rpscli.sweep.statistics.grouping import INTENSITY, Grouping, Histories, grouping
 from rpscli.sweep.statistics.lognormal import Bootstrap, Lognormal, band, lognormal_fit
 from rpscli.sweep.statistics.verdicts import exceeds
-from rpscli.sweep.table import Array, Indices, Intensity, Outcomes, StoredPoints, Table
+from rpscli.sweep.table import (
+    Array,
+    Indices,
+    Intensity,
+    Outcomes,
+    PointTable,
+    StoredPoints,
+)
 
 Item = TypeVar("Item")
 
@@ -292,7 +299,7 @@ def fragilities(study: StoredPoints, options: FragilityOptions) -> Fragilities:
 
 
 def _fragility(
-    table: Table,
+    table: PointTable,
     measured: Intensity,
     options: FragilityOptions,
     placed: tuple[int, Histories],

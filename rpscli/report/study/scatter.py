@@ -49,7 +49,14 @@ from rpscli.sweep.statistics.grouping import (
     grouping,
     shown_keys,
 )
-from rpscli.sweep.table import Array, StoredPoints, Table, groups, leading_keys, unit_of
+from rpscli.sweep.table import (
+    Array,
+    PointTable,
+    StoredPoints,
+    groups,
+    leading_keys,
+    unit_of,
+)
 from rpscli.units import in_si
 
 
@@ -100,7 +107,7 @@ class Ordinate(NamedTuple):
         return f"{self.name} [{self.unit}]"
 
 
-def ordinate(table: Table, name: str) -> Ordinate:
+def ordinate(table: PointTable, name: str) -> Ordinate:
     """A demand, a measure of the scaled motion (at T1), or a varied
     key, NaN where no number.
     """
@@ -215,7 +222,7 @@ MARKS: dict[str, Any] = {"ls": "", "ms": 3.0, "mew": 0.0, "alpha": 0.7}
 
 
 def _figure(
-    table: Table,
+    table: PointTable,
     found: Grouping,
     clouds: Sequence[Cloud],
     both: Sequence[Ordinate],
@@ -395,7 +402,7 @@ def overturning_spectrum(study: StoredPoints, options: SpectrumOptions) -> Found
     return Found({"": keyed((*found.keys, *series_keys), heads, rows)}, figure)
 
 
-def _without_uplift(table: Table) -> NDArray[np.str_]:
+def _without_uplift(table: PointTable) -> NDArray[np.str_]:
     """The outcomes; at rest is what a figure shows as such."""
     rotation = table.columns["rotation_ratio"]
     negligible = (table.outcomes == "survived") & (rotation < NEGLIGIBLE)

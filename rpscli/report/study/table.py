@@ -36,7 +36,7 @@ from rpscli.sweep.statistics.grouping import (
     statistic_words,
 )
 from rpscli.sweep.table import Array, StoredPoints, groups, leading_keys
-from rpscli.sweep.table import Table as Points
+from rpscli.sweep.table import PointTable as Points
 
 MOST_ROWS = 60
 MOST_COLUMNS = 12
@@ -164,7 +164,7 @@ def table_report(study: StoredPoints, options: TableOptions) -> Found:
 
     heads = ["\n".join(map(label, column_keys, values)) or "all" for values in columns]
     above = [over(rows.pooled), subject.words, left_out(rows.failed)]
-    shown = Shown(_row_names(rows), heads, cells, above)
+    shown = ShownTable(_row_names(rows), heads, cells, above)
     return Found({"": written}, lambda title: partial(_picture, shown, title), rows.notes)
 
 
@@ -201,7 +201,7 @@ def overturning(study: StoredPoints, options: OverturningOptions) -> Found:
     )
 
 
-class Shown(NamedTuple):
+class ShownTable(NamedTuple):
     """A table as its picture shows it, and remarks above it."""
 
     names: list[str]
@@ -234,7 +234,7 @@ def _lines(texts: Iterable[str]) -> int:
     return 1 + max(text.count("\n") for text in texts)
 
 
-def _fitted(shown: Shown, width: float) -> _Fitted:
+def _fitted(shown: ShownTable, width: float) -> _Fitted:
     """Rows and columns for a figure of some width [in], which may be higher than it is."""
     # Names may be as wide as the figure; what would run into the next column goes on
     # below.
@@ -259,7 +259,7 @@ def _fitted(shown: Shown, width: float) -> _Fitted:
     return _Fitted(names, heads, cells, below, room, height)
 
 
-def _picture(shown: Shown, title: str, figure: style.Figure) -> None:
+def _picture(shown: ShownTable, title: str, figure: style.Figure) -> None:
     """The first rows and columns, on cells that are the darker
     the larger their numbers.
     """

@@ -18,7 +18,7 @@ from rpscli.records.measures import measure_label
 from rpscli.shown import Frozen, frozen
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.fractiles import Share, demand, fractiles, share_of
-from rpscli.sweep.table import Array, Indices, Outcomes, Table, groups
+from rpscli.sweep.table import Array, Indices, Outcomes, PointTable, groups
 
 INTENSITY = "scale"
 """Name of the axis of factors and intensities in groups of a table."""
@@ -77,7 +77,7 @@ class Histories(Frozen):
 
     def parts(self, keys: Sequence[str]) -> list[Histories]:
         """Its points grouped by further keys."""
-        assert isinstance(self.table, Table), "keys are those of a study"
+        assert isinstance(self.table, PointTable), "keys are those of a study"
         found = groups(self.table.layout, keys, self.every)
         return [Histories(self.table, group.values, group.points) for group in found]
 
@@ -117,7 +117,7 @@ class Grouping:
 
 
 def grouping(
-    table: Table,
+    table: PointTable,
     keys: Sequence[str] | None = None,
     besides: Sequence[str] = (),
 ) -> Grouping:

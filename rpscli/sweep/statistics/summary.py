@@ -17,7 +17,7 @@ from rpscli.records.measures import measure_label
 from rpscli.records.recordings import clusters
 from rpscli.sweep.statistics.fractiles import Spread, demand, spread
 from rpscli.sweep.statistics.grouping import Histories, grouping
-from rpscli.sweep.table import Array, FixedBaseReferences, Outcomes, Table
+from rpscli.sweep.table import Array, FixedBaseReferences, Outcomes, PointTable
 
 REDUCTION = next(quantity for quantity in LIMITED if quantity.name == "fixed_base_ratio")
 
@@ -61,7 +61,7 @@ class Records(Outcomes):
         return cls(np.array(outcomes), columns, np.array(clusters(sources)), "recordings")
 
 
-def summary(table: Table, fixed: FixedBaseReferences) -> Summary:
+def summary(table: PointTable, fixed: FixedBaseReferences) -> Summary:
     """Of histories of a study, with storey shears on a fixed base as a reference."""
     found = grouping(table)
     known = _demands(table, {REDUCTION: shear_over_fixed_base(table, fixed)})
@@ -117,7 +117,7 @@ def _row(demands: dict[ResultQuantity, Array], of: Histories) -> SummaryRow:
     return SummaryRow(of.table, of.values, of.every, spreads)
 
 
-def shear_over_fixed_base(table: Table, fixed: FixedBaseReferences) -> Array:
+def shear_over_fixed_base(table: PointTable, fixed: FixedBaseReferences) -> Array:
     """(points,) base shear over that of the same building on a
     fixed base; NaN without one.
     """
@@ -140,7 +140,7 @@ MOVING = 0.01
 """Of its largest rotation: what survives and is tilted by more at its end still moves."""
 
 
-def _still_moving(table: Table) -> Iterator[str]:
+def _still_moving(table: PointTable) -> Iterator[str]:
     """The remark on residual rotations that are those of an instant."""
     at_end = table.columns["residual_rotation"]
     largest = table.columns["max_rotation"]
@@ -154,7 +154,7 @@ def _still_moving(table: Table) -> Iterator[str]:
         )
 
 
-def scale_notes(table: Table) -> Iterator[str]:
+def scale_notes(table: PointTable) -> Iterator[str]:
     """Remarks on single records that are scaled like pairs, and on
     factors that are unusual.
     """
@@ -193,7 +193,7 @@ PROMISED = 1e-4
 NAMED = 5
 
 
-def step_notes(table: Table) -> Iterator[str]:
+def step_notes(table: PointTable) -> Iterator[str]:
     """Remarks on points that change with steps of half the
     length; nothing if none does.
     """
@@ -219,7 +219,7 @@ def step_notes(table: Table) -> Iterator[str]:
         )
 
 
-def _change(table: Table, number: int, after: Demand) -> tuple[float, str]:
+def _change(table: PointTable, number: int, after: Demand) -> tuple[float, str]:
     """Largest relative change of a point with shorter steps, 0
     if none, and all in words.
     """

@@ -17,7 +17,7 @@ from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.fractiles import ROUNDING, Share, share_of, shown_by
 from rpscli.sweep.statistics.hazard import exceeded, rate_of_shares, read_hazard
 from rpscli.sweep.statistics.summary import Records, Summary
-from rpscli.sweep.table import Array, Indices, Outcomes, Table
+from rpscli.sweep.table import Array, Indices, Outcomes, PointTable
 
 MEAN_ROUNDING = 1e-12
 """Of a mean, which may be a sum's last digits beyond equal values."""
@@ -305,7 +305,7 @@ def judged_records(
 
 
 def judged(
-    table: Table, summary: Summary, conditions: Iterable[Condition] = ()
+    table: PointTable, summary: Summary, conditions: Iterable[Condition] = ()
 ) -> list[Verdict]:
     """Of each row of a summary, on the limits of study and cases
     and on further conditions.
@@ -336,7 +336,7 @@ def judged(
 
 
 def _limits_known(
-    table: Table, points: Indices, further: Iterable[Condition]
+    table: PointTable, points: Indices, further: Iterable[Condition]
 ) -> list[Condition]:
     """Limits of the systems of some points, and further ones, on results they have."""
     layout = table.layout
@@ -350,7 +350,7 @@ def _limits_known(
     ]
 
 
-def _is_known(table: Table, points: Indices, name: str) -> bool:
+def _is_known(table: PointTable, points: Indices, name: str) -> bool:
     """Whether points have a result all the same; the mean of columns
     is not that of one, beside systems that have this.
     """

@@ -20,7 +20,7 @@ from rpscli.errors import AnalysisError, RpsError
 if TYPE_CHECKING:
     from rpscli.case.case import Case
     from rpscli.records.ground_motion import MotionComponents
-    from rpscli.tools.budget.report import Budget, Row
+    from rpscli.tools.budget.report import Budget, BudgetRow
 
 PERIOD_RATIO = 1.2
 LOSSES = (0.3, 0.6, 0.9, 1.2)
@@ -64,7 +64,7 @@ def command(
 
 
 def case_budget(
-    given: inputs.CaseInput, motions: Sequence[inputs.Motion], terminal: Terminal
+    given: inputs.CaseInput, motions: Sequence[inputs.CaseMotion], terminal: Terminal
 ) -> Budget:
     """All rows of a case under the first of its motions."""
     from rpscli.tools.budget.report import Budget
@@ -85,22 +85,22 @@ def _row(
     cause: str,
     sets: tuple[str, ...],
     motion: inputs.MotionRequest | str,
-) -> Row:
+) -> BudgetRow:
     """What `rps timehistory` would find; the sentence of a refusal."""
     from rpscli.analyses.timehistory import time_history
     from rpscli.case.case import case_from_mapping
     from rpscli.commands.timehistory_run import limited
-    from rpscli.tools.budget.report import Row
+    from rpscli.tools.budget.report import BudgetRow
 
     if isinstance(motion, str):
-        return Row(cause, "", "", "", {}, "", motion)
+        return BudgetRow(cause, "", "", "", {}, "", motion)
     words = [*options.set_words((*given.request.overrides, *sets)), *motion.words]
     change = (
         re.sub(r"^[\w.]*\.|contact=|kind: |[{}]", "", sets[0])
         if sets
         else " ".join(words)
     )
-    row = Row(cause, change, shlex.join(words), "", {}, "", "")
+    row = BudgetRow(cause, change, shlex.join(words), "", {}, "", "")
     case = given.case
     try:
         if sets:
@@ -116,7 +116,7 @@ def _row(
     return row._replace(outcome=result.outcome, values=limited(result), record=source)
 
 
-def _wishes(case: Case, motions: Sequence[inputs.Motion]) -> Iterator[Wish]:
+def _wishes(case: Case, motions: Sequence[inputs.CaseMotion]) -> Iterator[Wish]:
     """All changes, in the order of the tables."""
     motion, ground = motions[0]
     for cause, *texts in _values(case):
@@ -267,7 +267,7 @@ def _direction(
     return cause, (f"record.source={other}", *unturned), alike
 
 
-def _records(case: Case, motions: Sequence[inputs.Motion]) -> Iterator[Wish]:
+def _records(case: Case, motions: Sequence[inputs.CaseMotion]) -> Iterator[Wish]:
     """Those that are given; of a single one the far-field set, each
     alone at the PGA of that.
     """
@@ -286,7 +286,7 @@ def _records(case: Case, motions: Sequence[inputs.Motion]) -> Iterator[Wish]:
                 for each in inputs.single_motions((source,), aim)
             ]
             motions = [
-                inputs.Motion(each, inputs.load_motion(case, each)) for each in alone
+                inputs.CaseMotion(each, inputs.load_motion(case, each)) for each in alone
             ]
         for motion, ground in motions:
             yield "records", (), _scaled(motion, ground.scale)

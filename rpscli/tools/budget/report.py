@@ -47,7 +47,7 @@ CAPTION = (
 )
 
 
-class Row(NamedTuple):
+class BudgetRow(NamedTuple):
     """One change, by options of `rps timehistory`: its results
     [SI], or why there are none.
     """
@@ -147,10 +147,10 @@ class Budget:
     """
 
     case: Case
-    every: list[Row]
+    every: list[BudgetRow]
 
     @cached_property
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[BudgetRow]:
         """Those with results."""
         return [row for row in self.every if not row.refused]
 

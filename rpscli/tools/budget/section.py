@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 def budget_section(
     given: inputs.CaseInput,
-    motions: Sequence[inputs.Motion],
+    motions: Sequence[inputs.CaseMotion],
     terminal: Terminal,
     look: Look,
     label: str,

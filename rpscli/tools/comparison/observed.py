@@ -11,7 +11,7 @@ from typing import NamedTuple
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.schema.keys import unit as key_unit
 from rpscli.case.study.schema import Axis
-from rpscli.case.text.document import Document, Fault, Path, Place, shown
+from rpscli.case.text.document import Document, Fault, Path, Position, shown
 from rpscli.case.text.files import read_text
 from rpscli.errors import CaseError, hint, listed
 from rpscli.titled_table import titled_table
@@ -129,7 +129,7 @@ def read_observed(
 
 
 def _fault(name: str, line: int, text: str) -> Fault:
-    return Fault(PATH, text, place=Place(name, line, 1, rank=1))
+    return Fault(PATH, text, place=Position(name, line, 1, rank=1))
 
 
 def _title_faults(columns: Sequence[_Column], known: Sequence[str]) -> Iterator[str]:

@@ -39,7 +39,7 @@ from rpscli.case.study.schema import (
     with_keys,
 )
 from rpscli.case.study.study import (
-    Study,
+    StudyInput,
     key_faults,
     linked_value,
     overridden,
@@ -235,7 +235,7 @@ class DesignTask:
     `unseen` records validate them.
     """
 
-    study: Study
+    study: StudyInput
     file: DesignFile
     unseen: tuple[str, ...]
 
@@ -289,7 +289,9 @@ class DesignTask:
             else (0,)
         )
 
-    def study_of(self, values: Array, sources: tuple[str, ...] | None = None) -> Study:
+    def study_of(
+        self, values: Array, sources: tuple[str, ...] | None = None
+    ) -> StudyInput:
         """The study of some designs, (designs, keys), under the
         design's records or others.
         """
@@ -356,7 +358,7 @@ def _notes(file: DesignFile, base: dict[str, Any]) -> Iterator[str]:
 
 
 def _used_and_unseen(
-    document: Document, file: DesignFile, study: Study, unseen: tuple[str, ...]
+    document: Document, file: DesignFile, study: StudyInput, unseen: tuple[str, ...]
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Records of the search, and those that the answer is
     validated on: others, or a part.

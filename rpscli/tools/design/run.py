@@ -27,7 +27,7 @@ from rpscli.report.table import Heading, Part, Table, csv_text
 from rpscli.studies import Study, StudyResult, collected, error_of
 from rpscli.sweep.points import StudyPoints, lay_out
 from rpscli.sweep.store import Store
-from rpscli.sweep.table import Table as Points
+from rpscli.sweep.table import PointTable as Points
 from rpscli.tools.design.keys import parse_design
 from rpscli.tools.design.report import (
     answer_document,

@@ -27,7 +27,7 @@ from rpscli.sweep.statistics.fractiles import CONFIDENCE, fractiles
 from rpscli.sweep.statistics.grouping import INTENSITY, shown_keys
 from rpscli.sweep.statistics.verdicts import decisive, judge, rates_of_levels, worse
 from rpscli.sweep.systems import needs_of, unit_cube
-from rpscli.sweep.table import Array, Indices, Table
+from rpscli.sweep.table import Array, Indices, PointTable
 from rpscli.tools.design.keys import DesignTask
 
 Flags = NDArray[np.bool_]
@@ -322,7 +322,7 @@ class Search:
         self.layout = self.first.layout or lay_out(task.study_of(self.first.values[:1]))
         self.requirements = requirements_of(task, self.layout)
 
-    def run(self, evaluate: Callable[[StudyPoints], Table]) -> Answer:
+    def run(self, evaluate: Callable[[StudyPoints], PointTable]) -> Answer:
         """Look at designs round by round; `evaluate` computes points."""
         answer = self._judged(self.first, evaluate)
         while (count := min(self.size, self.most - len(answer.places))) > 0:
@@ -354,7 +354,7 @@ class Search:
                 self.faults.setdefault(str(error).splitlines()[0])
         return found
 
-    def _judged(self, of: Round, evaluate: Callable[[StudyPoints], Table]) -> Answer:
+    def _judged(self, of: Round, evaluate: Callable[[StudyPoints], PointTable]) -> Answer:
         """The designs of a round; those that are no valid cases fail."""
         table = None if of.layout is None else evaluate(of.layout)
         scales = len(self.layout.scales)

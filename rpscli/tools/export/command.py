@@ -67,14 +67,14 @@ def command(
 
 def _motion(
     given: inputs.CaseInput, records: tuple[str, ...], terminal: Terminal
-) -> inputs.Motion:
+) -> inputs.CaseMotion:
     """The one motion of the model."""
     motions = list(inputs.single_motions(records, inputs.MotionRequest(), terminal.warn))
     if len(motions) > 1:
         raise UsageError(
             f"--record: a model has one motion, not {len(motions)}; name one of them"
         )
-    return inputs.Motion(motions[0], inputs.load_motion(given.case, motions[0]))
+    return inputs.CaseMotion(motions[0], inputs.load_motion(given.case, motions[0]))
 
 
 def _require_exportable(

@@ -24,7 +24,7 @@ from rpscli.commands.shell.options import (
 )
 from rpscli.commands.shell.terminal import Terminal, watched
 from rpscli.errors import LimitExceeded, UsageError
-from rpscli.report.files import OutputFolder, Run, heading
+from rpscli.report.files import CommandRun, OutputFolder, heading
 
 if TYPE_CHECKING:
     from rpscli.records.ground_motion import GroundMotion
@@ -185,7 +185,7 @@ def command(asked: SelectionOptions, out: Output) -> None:
     _conclude(_chosen(asked, out.terminal), out)
 
 
-class Comparison(NamedTuple):
+class ComparedPeriods(NamedTuple):
     """A target, and the range of periods in which spectra are compared with it [s]."""
 
     target: TargetSpectrum
@@ -196,7 +196,7 @@ class Comparison(NamedTuple):
     why: str  # the range is that
 
 
-def _comparison(asked: SelectionOptions, terminal: Terminal) -> Comparison:
+def _comparison(asked: SelectionOptions, terminal: Terminal) -> ComparedPeriods:
     """The target that was asked for, with the range of periods of a case."""
     from rpscli.records.target import load_target
     from rpscli.tools.selection.requirements import RULES as KNOWN
@@ -220,7 +220,7 @@ def _comparison(asked: SelectionOptions, terminal: Terminal) -> Comparison:
     if asked.periods is not None:
         span = asked.periods
         why = "as asked for"
-    return Comparison(spectrum, pgv, structure, requirements, span, why)
+    return ComparedPeriods(spectrum, pgv, structure, requirements, span, why)
 
 
 class Chosen(NamedTuple):
@@ -258,7 +258,7 @@ def _chosen(asked: SelectionOptions, terminal: Terminal) -> Chosen:
 
 
 def _request(
-    asked: SelectionOptions, comparison: Comparison, sources: Sequence[str]
+    asked: SelectionOptions, comparison: ComparedPeriods, sources: Sequence[str]
 ) -> SelectionRequest:
     """The set that is wanted, of the kind of spectra that options, rules or target name."""
     from rpscli.records.measures import USUAL
@@ -326,7 +326,7 @@ def _conclude(chosen: Chosen, out: Output) -> None:
     out.terminal.finish(document, tables, error)
 
 
-def _run(chosen: Chosen) -> Run:
+def _run(chosen: Chosen) -> CommandRun:
     """The command with its inputs, as files of results name it."""
     asked = chosen.asked
     file = Path(asked.target)
@@ -340,7 +340,9 @@ def _run(chosen: Chosen) -> Run:
         "where": asked.where,
     }
     name = chosen.selection.target.name
-    return Run("record select", name, file if file.is_file() else None, digest, inputs)
+    return CommandRun(
+        "record select", name, file if file.is_file() else None, digest, inputs
+    )
 
 
 def _structure(request: CaseRequest, terminal: Terminal) -> tuple[Periods, str]:
