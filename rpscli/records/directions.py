@@ -26,7 +26,8 @@ _VERTICAL = re.compile(
     re.IGNORECASE,
 )
 _COMPASS = {"n": 0.0, "e": 90.0, "s": 180.0, "w": 270.0}
-_AXIS = re.compile(r"ns|sn|ew|we|nsc|ewc", re.IGNORECASE)
+_AXIS = re.compile(r"ns|sn|ew|we|nsc|ewc|сю|юс|вз|зв", re.IGNORECASE)
+_AXIS_AZIMUTHS = {**dict.fromkeys("nsсю", 0.0), **dict.fromkeys("ewвз", 90.0)}
 _BEARING = re.compile(r"([ns])(\d{1,2})([ew])", re.IGNORECASE)
 _NAMED = re.compile(
     r"x|y|l|t|r|h|h1|h2|h|long\w*|trans\w*|radial|tran|(?!ch\d)[hbelsc][nhlgp][nexy12]\d*"
@@ -54,7 +55,7 @@ def direction_of(text: str) -> Direction | None:
     if match := _BEARING.fullmatch(word):
         return Direction(vertical=False, azimuth=_of_bearing(*match.groups()))
     if _AXIS.fullmatch(word):
-        return Direction(vertical=False, azimuth=_COMPASS[small[0]] % 180.0)
+        return Direction(vertical=False, azimuth=_AXIS_AZIMUTHS[small[0]])
     if (match := _AZIMUTH.fullmatch(word)) and float(match[1]) <= 360.0:
         return Direction(vertical=False, azimuth=float(match[1]))
     return HORIZONTAL if _NAMED.fullmatch(word) else None

@@ -17,6 +17,7 @@ import re
 import stat
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path, PurePath
@@ -47,6 +48,7 @@ from rpscli.records.recordings import (
     vertical_of,
     verticals,
 )
+from rpscli.records.repeats import repeats_among
 from rpscli.records.source import (
     FILE,
     LIKENESS,
@@ -399,9 +401,34 @@ def _files(of: Source, folder: Path | None, notes: list[str]) -> list[Source]:
         ]  # fmt: skip
         notes.append(f"{of}: vertical components left out: {_some(left_out)}")
         single = [each for each in single if each not in upright]
+    single = _once(of, single, folder, notes)
     return (
         single if of.components else _paired(of, [each.alone for each in single], folder)
     )
+
+
+def _once(
+    of: Source, single: list[Source], folder: Path | None, notes: list[str]
+) -> list[Source]:
+    """Sources without those that are another one by a further name, with notes on these."""
+    motions = {}
+    for each in single:
+        with suppress(RecordError):  # told where it is read
+            motions[each] = load_record(each.alone, folder=folder)
+    repeats = repeats_among(motions, folder)
+    for is_one, told in (
+        (True, "the same component again, left out"),
+        (False, "the same samples by other names, all taken"),
+    ):
+        names = [
+            f"{PurePath(each.place).name} (as {PurePath(first.place).name})"
+            for each, (first, one) in repeats.items()
+            if one is is_one
+        ]
+        if names:
+            notes.append(f"{of}: {told}: {_some(names)}")
+    again = {each for each, (_, one) in repeats.items() if one}
+    return [each for each in single if each not in again]
 
 
 _BELOW_BY_NAME = re.compile(

@@ -274,6 +274,49 @@ def test_instruments_below_the_ground_are_left_out(line, tmp_path):
     assert "in boreholes, left out" in notes[0]
 
 
+@pytest.mark.parametrize(
+    ("names", "kept", "told"),
+    [
+        (("rec.at2", "rec.csv"), 1, "the same component again, left out: "),
+        (("rec.at2", "other.csv"), 2, "the same samples by other names, all taken: "),
+        (("s-NS.at2", "s-EW.at2"), 2, ""),  # refused where they are a pair
+        (("s.EW", "s.NS"), 2, ""),
+    ],
+)
+def test_a_conversion_beside_its_file_counts_once(names, kept, told, tmp_path):
+    motion = GroundMotion(VALUES, 0.005, name="rec")
+    for name in names:
+        ours = two_column_text(motion) if name.endswith("csv") else at2_text(motion)
+        (tmp_path / name).write_text(ours)
+    (tmp_path / "weaker.csv").write_text(two_column_text(motion.scaled(0.999)))
+    found, notes = expanded([f"{tmp_path}"])
+    assert len(found) == kept + 1
+    assert len(notes) == bool(told)
+    assert told in " ".join(notes)
+
+
+def test_keys_of_an_own_conversion_count_before_its_description(tmp_path):
+    told = Recording("Northridge-01, 1/17/1994", station="Sylmar", direction="90")
+    text = "PEER NGA; Northridge-01, 1/17/1994, Sylmar, 90"
+    motion = GroundMotion(VALUES, 0.005, name="rec", recording=told, description=text)
+    (tmp_path / "conv.txt").write_text(two_column_text(motion))
+    (tmp_path / "rec.at2").write_text(at2_text(motion))
+    assert load_record(f"{tmp_path / 'conv.txt'}").recording[:2] == told[:2]
+    assert load_record(f"{tmp_path / 'conv.txt'}").recording.direction == "90"
+    assert len(expanded([f"{tmp_path}"])[0]) == 1
+
+
+def test_of_a_file_and_its_conversion_stays_what_states_more(tmp_path):
+    told = Recording(event="Kobe 1995", station="JMA", direction="N")
+    motion = GroundMotion(VALUES, 0.005, name="rec", recording=told)
+    (tmp_path / "rec.at2").write_text(at2_text(motion))
+    (tmp_path / "a.csv").write_text(series("dt: 0.005", "units: m/s2"))
+    (tmp_path / "rec.csv").write_text(series("dt: 0.005", "units: m/s2"))
+    found, notes = expanded([f"{tmp_path}"])
+    assert [path.rsplit("/")[-1] for path in found] == ["a.csv", "rec.at2"]
+    assert "rec.csv (as rec.at2)" in notes[0]
+
+
 def test_the_depth_of_an_earthquake_is_not_that_of_an_instrument(tmp_path):
     text = series(
         "Hypocentral depth: 9 km", "event depth = 12000 m", "dt: 0.005", "units: g"

@@ -108,7 +108,10 @@ def test_a_folder_as_downloaded(stations):
     assert found == [
         "CHB002.EW", "CHB002.NS", "one.smc", "three.v2?channel=1", "three.v2?channel=3", "two.smc"
     ]  # fmt: skip
-    *refused, upright = notes
+    *refused, upright, alike = notes
+    assert alike.endswith(
+        "names, all taken: one.smc (as three.v2), two.smc (as three.v2)"
+    )
     assert upright.endswith("left out: CHB002.UD, three.smc, three.v2 channel 2")
     assert [text[:19] for text in refused] == [
         ".: left out: raw.sm",

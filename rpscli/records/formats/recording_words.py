@@ -25,9 +25,10 @@ def recording_of(lines: Iterable[str]) -> Recording:
     """The recording that lines with keys describe, or a title as the PEER flatfiles have.
 
     A title is `event, date, station, direction`, or of the first collection `EVENT date
-    time, STATION, direction (agency)`.
+    time, STATION, direction (agency)`. What stands behind a key counts before it.
     """
     said: dict[str, str] = {}
+    titled: Recording | None = None
     below = False
     for line in lines:
         below |= is_below_ground(line)
@@ -37,11 +38,11 @@ def recording_of(lines: Iterable[str]) -> Recording:
                 said[name] = match[1][:80]
         if "direction" not in said and (way := _direction_without_key(line)):
             said["direction"] = way
-        if not said and (titled := titled_recording(line)) is not None:
-            return titled
+        titled = titled or (None if said else titled_recording(line))
+    found = (titled or Recording())._replace(**said)  # type: ignore[arg-type]
     if below:
-        said["station"] = f"{said.get('station', '')} borehole".strip()
-    return Recording(**said)  # type: ignore[arg-type]
+        found = found._replace(station=f"{found.station} borehole".strip())
+    return found
 
 
 _DIP = re.compile(r"\bdip\b\s*[:=]\s*[+-]?90\b", re.IGNORECASE)
