@@ -274,6 +274,39 @@ def test_instruments_below_the_ground_are_left_out(line, tmp_path):
     assert "in boreholes, left out" in notes[0]
 
 
+PEAKS = [
+    "PGA = 0.5 g", "max acc: 0.5 g", "maximum acceleration = 490.3 gal", "Amax = 0.5",
+    "Peak ground acceleration (g): 0.5", "Peak value 0.5 g at 3.2 s", "PHA 0.5 g",
+    "absolute maximum: 0.5 g", "MAX= .5 G", "PEAK VALUE = .5", "abs. max. acc. 4.903 m/s2",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("peak", PEAKS)
+@pytest.mark.parametrize("factor", [1.0, 0.5])
+def test_a_stated_peak_is_compared(peak, factor, tmp_path):
+    samples = 0.5 * factor * np.sin(TIMES) / np.max(np.abs(np.sin(TIMES)))
+    rows = "\n".join(f"{x:.8f}" for x in samples) + "\n"
+    plain = read(tmp_path, f"dt: 0.005\nunits: g\n{peak}\n{rows}")
+    head = f"PEER\nA, 1/1/2001, B, 0\nUNITS OF G\nNPTS= 200, DT= .005 SEC, {peak}\n"
+    at2 = read(tmp_path, head + rows, name="x.at2")
+    for motion in (plain, at2):
+        assert ("the values peak at" in " ".join(motion.warnings)) == (factor != 1.0)
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["PSEUDO ACCELERATION SPECTRUM IN UNITS OF G", "PSA IN UNITS OF G",
+     "FOURIER AMPLITUDE, UNITS OF G-S", "RESPONSE SPECTRA, UNITS: G"],
+)  # fmt: skip
+def test_spectra_as_at2_are_refused(line, tmp_path):
+    rows = "\n".join(f"{x:15.7E}" for x in VALUES)
+    head = "PEER\nA, 1/1/2001, B, 0\n{}\nNPTS= 200, DT= .005 SEC\n"
+    with pytest.raises(RecordError, match="acceleration record of the same station"):
+        read(tmp_path, head.format(line) + rows + "\n", name="x.at2")
+    series_of = "SPECTRUM COMPATIBLE ACCELERATION TIME SERIES IN UNITS OF G"
+    assert read(tmp_path, head.format(series_of) + rows + "\n", name="x.at2").npts == 200
+
+
 @pytest.mark.parametrize(
     ("names", "kept", "told"),
     [

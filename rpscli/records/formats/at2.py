@@ -14,6 +14,7 @@ from rpscli.constants import STANDARD_GRAVITY
 from rpscli.records.formats.record_text import Channel, RecordText, Stated
 from rpscli.records.formats.recording_words import titled_recording
 from rpscli.records.formats.statements import (
+    PEAK_PATTERN,
     STATED_PATTERN,
     STEP_PATTERN,
     Statement,
@@ -45,7 +46,12 @@ _BOTH = re.compile(
 _VALUE = re.compile(
     rf"\s*(?:{NUMBER_PATTERN}(?=[\s,+-]|$)|\*+|[+-]?(?:nan|inf))", re.IGNORECASE
 )
-_OTHER_SERIES = re.compile(r"\b(VELOCITY|DISPLACEMENT)\s+TIME\b", re.IGNORECASE)
+_OTHER_SERIES = re.compile(
+    r"\b(VELOCITY|DISPLACEMENT)\s+TIME\b"
+    r"|\b(SPECTR(?:UM|A))\b(?!\W*(?:COMPAT|MATCH))|\b((?:RESPONSE|FOURIER|POWER)\s+SPECTR\w+)"
+    r"|^\W*(PSA|PSV|SA|SV|SD|RSA|FOURIER)\b.*\bUNITS?\b",
+    re.IGNORECASE,
+)
 _DECLARES = r"\bUNITS?\s*(?:OF\b|IN\b|ARE\b|[=:])"
 # What a title that mentions units in passing does not look like.
 _UNITS_DECLARED = re.compile(
@@ -54,12 +60,6 @@ _UNITS_DECLARED = re.compile(
 _UNITS_LINE = re.compile(_DECLARES, re.IGNORECASE)
 _UNITS = re.compile(
     rf"(?:{_DECLARES}|\bACCELERATION\b.*\bIN\b)[\s(\[]*({UNIT_PATTERN})", re.IGNORECASE
-)
-
-
-_PEAK = (
-    r"\b(?:PGA|PEAK(?:\s*(?:GROUND\s*)?ACC\w*)?)(?:\s*VALUE)?\s*[=:]\s*"
-    rf"({NUMBER_PATTERN})\s*({UNIT_PATTERN})?"
 )
 
 
@@ -152,9 +152,9 @@ def _stated(
     for index, line in enumerate(text.heads[:start]):
         if other := _OTHER_SERIES.search(line):
             raise text.fault(
-                f"this is a {other[1].lower()} record ({line.strip()[:60]!r}); give the "
-                "acceleration record of the same station, usually the file ending in"
-                " .AT2",
+                f"this is a {other[other.lastindex or 1].lower()} record"
+                f" ({line.strip()[:60]!r}); give the acceleration record of the same"
+                " station, usually the file ending in .AT2",
                 index,
             )
         if not _BOTH.search(line):
@@ -170,7 +170,7 @@ def _stated(
     step = text.step(dt)
     numeral = whole_number(dt.value).partition(" ")[0]
     resolution = last_digit(numeral) * step / text.number(dt._replace(value=numeral))
-    peak = next(iter(statements("the peak", _PEAK, heads)), None)
+    peak = next(iter(statements("the peak", PEAK_PATTERN, heads)), None)
     recording = _recording(_title(text, npts))
     stated = Stated(unit, step, resolution, peak=peak, recording=recording)
     agreed = text.agreed_dt(step, 0.51 * resolution / step)

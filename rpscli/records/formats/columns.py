@@ -29,7 +29,12 @@ from rpscli.records.formats.record_text import (
     uniform_step,
 )
 from rpscli.records.formats.recording_words import recording_of
-from rpscli.records.formats.statements import STEP_PATTERN, Statement, statements
+from rpscli.records.formats.statements import (
+    PEAK_PATTERN,
+    STEP_PATTERN,
+    Statement,
+    statements,
+)
 from rpscli.records.formats.titles import (
     ACCELERATION,
     ANY_UNIT,
@@ -62,11 +67,6 @@ _COUNT = r"\b(?:npts|ndata|number of (?:data|points|samples|values))\b\s*[=:]\s*
 _UNITS_KEY = (
     r"(?<![?&])\b\w*?units?\b\s*(?:[=:]|(?:of|in|are|is)\b)"
     rf"(?:[\s(\[]*(?:({UNIT_PATTERN}))|\s*([^,;]+))"
-)
-_PEAK = (
-    r"\b(?:peak|max\w*)\s*(?:ground\s*)?acc\w*\s*"
-    rf"(?:[\[(]\s*({UNIT_PATTERN})\s*[\])]\s*[=:]\s*({NUMBER_PATTERN})(?=\s*$)"
-    rf"|[=:]\s*({NUMBER_PATTERN})\s*({UNIT_PATTERN}))"
 )
 
 
@@ -176,6 +176,9 @@ def _is_comment(line: str) -> bool:
     return line.lstrip().startswith(("#", "%", "!", "//", "*", "|"))
 
 
+_IS_STATEMENT = re.compile(rf":|=\s*[+-]?\.?\d|{PEAK_PATTERN}", re.IGNORECASE)
+
+
 def _titles(text: RecordText, table: _Table, width: int) -> list[ColumnTitle]:
     """What the user says of the columns, else the last line that has a title for each;
     empty without one.
@@ -186,7 +189,7 @@ def _titles(text: RecordText, table: _Table, width: int) -> list[ColumnTitle]:
     for line in reversed(table.header):
         for separator in (r"[,;\t]", r"\s{2,}|\t", r"\s+"):
             cells = _cells(line.value, separator)
-            if len(cells) != width or any(":" in cell for cell in cells):
+            if len(cells) != width or any(map(_IS_STATEMENT.search, cells)):
                 continue
             bare = [cell.strip("()[]") for cell in cells]
             if not units and width > 1 and all(map(ANY_UNIT.fullmatch, bare)):
@@ -487,7 +490,7 @@ def _stated(text: RecordText, table: _Table, title: ColumnTitle | None) -> State
         each._replace(value=f"{1.0 / text.number(each, positive=True):.15g}")
         for each in statements("the sampling rate", _RATE, lines)
     ]
-    peak = next(iter(statements("peak", _PEAK, lines)), None)
+    peak = next(iter(statements("peak", PEAK_PATTERN, lines)), None)
     if title and title.unit and (canonical_unit(title.unit) or not title.remarks):
         units.append(Statement(f"the title {title.name}", title.unit, title.line))
     recording = recording_of(line for _, line in lines)

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from rpscli.records.quantities import NUMBER_PATTERN, to_float
+from rpscli.records.quantities import NUMBER_PATTERN, UNIT_PATTERN, to_float
 
 STATED_PATTERN = rf"{NUMBER_PATTERN}(?:,[0-9]+)?"
 """A number as a header states it; one with a decimal comma is then refused by name."""
@@ -29,6 +29,20 @@ class Statement(NamedTuple):
     name: str
     value: str
     line: int
+
+
+_OF_ACCELERATION = (
+    r"(?:PGA|PHA|A_?max|peak(?:\s*value)?(?=\s*[=:])"
+    r"|(?:abs[\w.]*[\s_]*)?(?:peak|max[\w.]*)[\s_]*(?:ground[\s_]*)?acc[\w.]*)"
+)
+_OF_SOMETHING = r"(?:(?:abs\w*[\s_]*)?(?:peak|max\w*)(?:[\s_]*(?:value|ampl\w*))?)"
+PEAK_PATTERN = (
+    rf"(?<!\w){_OF_ACCELERATION}(?:\s*value)?"
+    rf"(?:\s*[\[(]\s*({UNIT_PATTERN})\s*[\])]\s*[=:]?\s*({NUMBER_PATTERN})"
+    rf"|\s*[=:]?\s*({NUMBER_PATTERN})\s*({UNIT_PATTERN})|\s*[=:]\s*({NUMBER_PATTERN}))"
+    rf"|(?<!\w){_OF_SOMETHING}\s*[=:]?\s*({NUMBER_PATTERN})\s*({UNIT_PATTERN})"
+)
+"""A largest acceleration; where words do not say of what it is, its unit has to."""
 
 
 def statements(
