@@ -9,7 +9,7 @@ import numpy as np
 
 from rpscli.records.directions import direction_of
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.recordings import clusters
+from rpscli.records.recordings import clusters, events_among
 from rpscli.records.source import Source
 
 _ALIKE = 1e-4
@@ -62,6 +62,9 @@ def _one_component(
 ) -> bool:
     """True if two sources of the same samples have one name, or state one component."""
     told = [motions[each].recording for each in (one, other)]
+    dated = all(each.event or each.origin for each in told)
+    if dated and len({*events_among(told, (0, 1))}) == 2:
+        return False
     first, second = ((each.station, each.direction) for each in told)
     if all(first) and all(second):
         return first == second

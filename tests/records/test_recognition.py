@@ -339,6 +339,16 @@ def test_keys_of_an_own_conversion_count_before_its_description(tmp_path):
     assert len(expanded([f"{tmp_path}"])[0]) == 1
 
 
+def test_one_station_in_two_earthquakes_is_no_repetition(tmp_path):
+    for name, event in (("a", "Kobe 1995"), ("b", "Tottori 2000")):
+        told = Recording(event=f"{event}, 1/1/{event[-4:]}", station="S", direction="N")
+        motion = GroundMotion(VALUES, 0.005, name="rec", recording=told)
+        (tmp_path / f"{name}.at2").write_text(at2_text(motion))
+    found, notes = expanded([f"{tmp_path}"])
+    assert len(found) == 2
+    assert "all taken" in notes[0]
+
+
 def test_of_a_file_and_its_conversion_stays_what_states_more(tmp_path):
     told = Recording(event="Kobe 1995", station="JMA", direction="N")
     motion = GroundMotion(VALUES, 0.005, name="rec", recording=told)
