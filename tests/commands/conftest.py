@@ -1,6 +1,7 @@
 """A command line in a working folder of its own."""
 
 import csv
+import importlib
 import json
 import os
 import subprocess
@@ -11,7 +12,9 @@ import pytest
 from click.testing import CliRunner
 from sweep.small_studies import BASE, ROOT
 
+from rpscli import registry
 from rpscli.cli import program
+from rpscli.commands.registry import others
 
 SMALL_CASE = (
     BASE.replace("superstructure:", 'title: "Three storeys [test]"\nsuperstructure:', 1)
@@ -112,3 +115,18 @@ def shell(workplace):
         )
 
     return run
+
+
+@pytest.fixture
+def forgotten():
+    """What is installed is looked for anew."""
+
+    def forget():
+        importlib.invalidate_caches()
+        registry._points.cache_clear()
+        registry._loaded.cache_clear()
+        others.cache_clear()
+
+    forget()
+    yield
+    forget()

@@ -20,7 +20,7 @@ from rpscli.records.measures import IntensityMeasure
 from rpscli.records.target import TargetSpectrum, load_target
 from rpscli.registry import Shared, apart, printed_aside
 
-from .test_plugins import STUDY, as_installed, forgotten  # noqa: F401 -- a fixture
+from .test_plugins import STUDY, as_installed
 
 HOSTILE = """\
 import sys
@@ -108,7 +108,7 @@ UNITS = "known are 1, m, kg, .*1/s, rad/s and N s2/m2"
 
 
 @pytest.fixture
-def hostile(tmp_path, monkeypatch, forgotten):  # noqa: F811
+def hostile(tmp_path, monkeypatch, forgotten):
     """The package, as if installed."""
     lines = (
         f"[rpscli.{kind}]\n" + "".join(f"{name} = hostile:{name}\n" for name in names)

@@ -1,6 +1,5 @@
 """What other packages add: the example is installed and used, broken ones break nothing else."""
 
-import importlib
 import importlib.metadata
 import os
 import re
@@ -17,10 +16,8 @@ from PIL import Image
 from shown_commands import ROOT, command, of_blocks, run_in_shell
 
 import rpscli
-from rpscli import registry
 from rpscli.case.schema.scale_to import scale_to_of
 from rpscli.commands.init import schema_of
-from rpscli.commands.registry import others
 from rpscli.errors import CaseError, PluginError, RecordError
 from rpscli.records.formats import FORMATS
 from rpscli.records.measures import MEASURES
@@ -59,21 +56,6 @@ def as_installed(folder, name, entry_points):
     metadata = f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n"
     (place / "METADATA").write_text(metadata, encoding="utf-8")
     (place / "entry_points.txt").write_text(entry_points, encoding="utf-8")
-
-
-@pytest.fixture
-def forgotten():
-    """What is installed is looked for anew."""
-
-    def forget():
-        importlib.invalidate_caches()
-        registry._points.cache_clear()
-        registry._loaded.cache_clear()
-        others.cache_clear()
-
-    forget()
-    yield
-    forget()
 
 
 @pytest.fixture

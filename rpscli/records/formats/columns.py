@@ -514,7 +514,7 @@ def _refuse_other_quantities(
         if kind == "a spectrum":
             raise text.fault(
                 f"the title {title.name[:40]!r} is that of a spectrum, not of a record"
-                " over time",
+                " over time; give the acceleration record of the same station",
                 title.line,
             )
     if ACCELERATION not in kinds:
