@@ -20,7 +20,7 @@ def _lowered(sentence: str) -> str:
     return f"{sentence[:1].lower()}{sentence[1:].rstrip('.')}"
 
 
-class Program(CommandGroup):
+class RootGroup(CommandGroup):
     """The program itself: it imports a command when that is used,
     and ends with an exit code.
     """
@@ -86,7 +86,7 @@ class Program(CommandGroup):
 
 
 @click.command(
-    cls=Program,
+    cls=RootGroup,
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog=(
         "Exit codes: 0 done, 1 internal error or nothing could be written, 2 usage, 3"

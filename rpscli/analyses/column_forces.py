@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.column_design import no_line
-from rpscli.analyses.trace import Direction, Trace
+from rpscli.analyses.trace import DirectionTrace, Trace
 from rpscli.errors import listed
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics import state
@@ -164,7 +164,7 @@ def sliding_time(structure: PodiumStructure, trace: Trace) -> float:
     return float(share * trace.time[-1])
 
 
-def _directions(trace: Trace) -> list[tuple[Direction, Array]]:
+def _directions(trace: Trace) -> list[tuple[DirectionTrace, Array]]:
     """What a history has in x and, of both components, in y, with the
     part of the tilt to there.
     """
@@ -173,7 +173,7 @@ def _directions(trace: Trace) -> list[tuple[Direction, Array]]:
     return [(trace, np.cos(trace.azimuth)), (trace.y, np.sin(trace.azimuth))]
 
 
-def overturning_moment(structure: PodiumStructure, of: Direction) -> Array:
+def overturning_moment(structure: PodiumStructure, of: DirectionTrace) -> Array:
     """Moment of the floors' inertia about the cap beam (samples,) [N
     m], positive to the right.
     """
@@ -186,7 +186,7 @@ def overturning_moment(structure: PodiumStructure, of: Direction) -> Array:
 
 
 def thrust_moment(
-    structure: PodiumStructure, t: Trace, of: Direction, towards: Array
+    structure: PodiumStructure, t: Trace, of: DirectionTrace, towards: Array
 ) -> Array:
     """Moment of leaning thrust lines and drifts, beside that of
     inertia (samples,) [N m].

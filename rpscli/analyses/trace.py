@@ -135,7 +135,7 @@ class DeviceTrace(_Sampled, Frozen):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Direction(_Sampled, Shown):
+class DirectionTrace(_Sampled, Shown):
     """Part of a trace in one horizontal direction: arrays (samples, ...)."""
 
     ground_acceleration: Array  # a_g [m/s2]
@@ -156,7 +156,7 @@ class Direction(_Sampled, Shown):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Trace(Direction):
+class Trace(DirectionTrace):
     """Histories at the record's samples and on through the free vibration, SI units.
 
     Arrays are (samples,), those of floors and storeys (samples, n) from the bottom. What
@@ -184,7 +184,7 @@ class Trace(Direction):
     devices: DeviceTrace
     azimuth: Array | None = None  # of the tilt of both components, from x towards y [rad]
     azimuth_rate: Array | None = None  # [rad/s]
-    y: Direction | None = (
+    y: DirectionTrace | None = (
         None  # what a history of both components has in y; the rest is in x
     )
     vertical_accelerations: Array | None = None  # absolute, of floors on springs [m/s2]
@@ -236,7 +236,7 @@ def _directed(
     t: Trace, name: str, unit: str, field: str, over: int = 1
 ) -> Iterator[Sampled]:
     """A field of each direction, and of each floor from the bottom, over a number."""
-    ways: list[tuple[str, Direction]] = (
+    ways: list[tuple[str, DirectionTrace]] = (
         [("", t)] if t.y is None else [("_x", t), ("_y", t.y)]
     )
     for way, of in ways:
@@ -303,7 +303,7 @@ def trace_of(structure: PodiumStructure, run: SampledHistory) -> Trace:
         devices=DeviceTrace(*np.moveaxis(run.devices, 1, 0)),
         azimuth=samples.azimuth if pairs else None,
         azimuth_rate=samples.turning if pairs else None,
-        y=Direction(**_in_direction(structure, run, 1)) if pairs else None,
+        y=DirectionTrace(**_in_direction(structure, run, 1)) if pairs else None,
         vertical_accelerations=None
         if structure.upwards is None
         else run.floors[:, 2, -structure.storeys :],
@@ -314,7 +314,7 @@ def trace_of(structure: PodiumStructure, run: SampledHistory) -> Trace:
 def _in_direction(
     structure: PodiumStructure, run: SampledHistory, axis: int
 ) -> dict[str, Array]:
-    """By the names of `Direction`, in x or in y."""
+    """By the names of `DirectionTrace`, in x or in y."""
     n = structure.storeys
     samples = run.samples
     building = structure.superstructure

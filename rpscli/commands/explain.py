@@ -39,7 +39,7 @@ BEARING = """\
 """
 
 
-class Entry(NamedTuple):
+class ExplainEntry(NamedTuple):
     """A meaning: the list of the document in which it stands, what it
     says there, and its text.
     """
@@ -80,7 +80,9 @@ def command(words: tuple[str, ...], terminal: Terminal) -> None:
         return
     report = [*_reports(word, everything=False, options=False)]
     meant = [
-        Entry("words", {"word": name, "meaning": meaning}, (Heading(name), meaning))
+        ExplainEntry(
+            "words", {"word": name, "meaning": meaning}, (Heading(name), meaning)
+        )
         for name, meaning in glossary()
         if _as_printed(word) in _names(name)
     ]
@@ -102,7 +104,7 @@ def command(words: tuple[str, ...], terminal: Terminal) -> None:
         raise UsageError(f"explain {word}: there is no such name; {instead}")
     parts = [part for entry in entries for part in entry.parts]
     parts += _listing(offers, everything=word == PLUGINS)
-    entries += [Entry("plugins", offer._asdict()) for offer in offers]
+    entries += [ExplainEntry("plugins", offer._asdict()) for offer in offers]
     said = {
         kind: [entry.said for entry in entries if entry.kind == kind] for kind in KINDS
     }
@@ -160,7 +162,7 @@ def _everything() -> tuple[dict[str, Any], list[Part]]:
     return {**heading("explain"), "word": None, "names": said}, parts
 
 
-def _result(quantity: ResultQuantity) -> Entry:
+def _result(quantity: ResultQuantity) -> ExplainEntry:
     text = Table.listing([
         ("means", quantity.label),
         ("unit", quantity.unit or "none"),
@@ -170,7 +172,7 @@ def _result(quantity: ResultQuantity) -> Entry:
         ("limits", "are at_least, since small values are bad" if quantity.from_below else ""),
     ])  # fmt: skip
     said = {name: value for name, value in quantity._asdict().items() if value}
-    return Entry("results", said, (Heading(f"{quantity.name}, a result"), text))
+    return ExplainEntry("results", said, (Heading(f"{quantity.name}, a result"), text))
 
 
 def _formats() -> list[KeyReference]:
@@ -187,7 +189,7 @@ def _formats() -> list[KeyReference]:
     return list({key.key: key for key in reversed(keys)}.values())[::-1]
 
 
-def _keys(word: str, *, texts: bool) -> Iterator[Entry]:
+def _keys(word: str, *, texts: bool) -> Iterator[ExplainEntry]:
     """Keys that are called so: in full, else by their end, else by their symbol, or by
     the first words of their meaning where texts count.
     """
@@ -206,10 +208,10 @@ def _keys(word: str, *, texts: bool) -> Iterator[Entry]:
         more = f" and {len(others) - 2} more" if len(others) > 2 else ""
         likewise = [f"likewise {also}{more}"] if others else []
         drawing = [BEARING] if key.key.startswith("podium.bearing") else []
-        yield Entry(
+        yield ExplainEntry(
             "keys", _said(key), (Heading(key.key), *likewise, _lines(key), *drawing)
         )
-        yield from (Entry("keys", _said(other)) for other in others)
+        yield from (ExplainEntry("keys", _said(other)) for other in others)
 
 
 def _first_words(key: KeyReference) -> list[str]:
@@ -241,7 +243,7 @@ def _lines(key: KeyReference) -> Table:
     ])  # fmt: skip
 
 
-def _reports(word: str, *, everything: bool, options: bool) -> Iterator[Entry]:
+def _reports(word: str, *, everything: bool, options: bool) -> Iterator[ExplainEntry]:
     """The report of this name with its options, of other packages
     only where all are wanted.
 
@@ -255,7 +257,7 @@ def _reports(word: str, *, everything: bool, options: bool) -> Iterator[Entry]:
     if report := (REPORTS.everything() if everything else REPORTS).get(word):
         meaning = summary_of(report.options)
         text = Heading(f"{word}, a report of studies"), meaning
-        yield Entry("reports", {"report": word, "meaning": meaning}, text)
+        yield ExplainEntry("reports", {"report": word, "meaning": meaning}, text)
         # Ranges of values of each limit are told at the limits of studies.
         keys = key_references(report.options)
         named = {key: [] for key in keys if not key.key.startswith("limits.")}
@@ -269,7 +271,7 @@ def _reports(word: str, *, everything: bool, options: bool) -> Iterator[Entry]:
             if reports
             else ""
         )
-        yield Entry(
+        yield ExplainEntry(
             "options", _said(key), (Heading(f"option {key.key}{of}"), _lines(key))
         )
 

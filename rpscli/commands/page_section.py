@@ -11,7 +11,7 @@ import click
 from rpscli.registry import all_of_tools
 
 if TYPE_CHECKING:
-    from rpscli.report.page import Section
+    from rpscli.report.page import ReportSection
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -20,7 +20,7 @@ class PageSection(NamedTuple):
     """A section, and the help of its flag."""
 
     help: str
-    made: Callable[..., Section]  # of a case, motions, a terminal, a look, a label
+    made: Callable[..., ReportSection]  # of a case, motions, a terminal, a look, a label
 
 
 PAGE_SECTIONS: dict[str, PageSection] = all_of_tools("page_sections")

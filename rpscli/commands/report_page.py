@@ -41,7 +41,7 @@ from rpscli.report.files import (
     results_of,
 )
 from rpscli.report.limits import verdicts_in_short
-from rpscli.report.page import Block, Notice, Picture, Section, pictures
+from rpscli.report.page import Block, Notice, Picture, ReportSection, pictures
 from rpscli.report.study.report import labels
 from rpscli.report.study.statistics import (
     cut,
@@ -190,7 +190,7 @@ class PageDone(NamedTuple):
 
     title: str
     subtitle: str
-    sections: Sequence[Section]
+    sections: Sequence[ReportSection]
     document: dict[str, Any]
     error: RpsError | None
     signed: DocumentSection
@@ -209,7 +209,7 @@ class _Histories(NamedTuple):
 
     title: str
     short: Iterable[Block]
-    results: list[Section]
+    results: list[ReportSection]
     document: dict[str, Any]
     error: RpsError | None
     worst: int = 0
@@ -280,7 +280,7 @@ def _extra_sections(
     made: _Histories,
     extra: Sequence[str],
     out: Output,
-) -> Iterator[Section]:
+) -> Iterator[ReportSection]:
     """Sections of tools that are asked for, under the worst of the motions first."""
     if not extra:
         return
@@ -496,7 +496,7 @@ def study_page(study: Study, out: Output) -> PageDone:
     )
 
 
-def _study_results(done: Swept, out: Output) -> Iterator[Section]:
+def _study_results(done: Swept, out: Output) -> Iterator[ReportSection]:
     """Figures; ground motions and statistics before them where there are histories."""
     study = done.result.study
     if done.result.summary:
@@ -506,7 +506,7 @@ def _study_results(done: Swept, out: Output) -> Iterator[Section]:
             of_first_system(study.layout),
             *done.found.parts,
         ]
-        yield Section("Statistics", [*cut(statistics)])
+        yield ReportSection("Statistics", [*cut(statistics)])
     yield figures(done.found.files, study)
 
 
@@ -550,7 +550,7 @@ def motions_of(study: Study) -> tuple[list[GroundMotion], list[str]]:
     return motions, reasons
 
 
-def figures(files: Mapping[str, object], study: Study) -> Section:
+def figures(files: Mapping[str, object], study: Study) -> ReportSection:
     """All of them, with the kind and the title of the report that each is of."""
     drawn = []
     for stem, each in pictures(files.items()).items():
@@ -558,7 +558,7 @@ def figures(files: Mapping[str, object], study: Study) -> Section:
         kind, title = (request.kind, request.options.title) if request else (stem, None)
         caption = f"{kind.replace('_', ' ').capitalize()}{f': {title}' if title else ''}."
         drawn.append(Picture(each, caption))
-    return Section("Figures", drawn)
+    return ReportSection("Figures", drawn)
 
 
 def study_input(study: Study, first: Case, which: str) -> Iterator[Block]:

@@ -9,15 +9,15 @@ import re
 from typing import NamedTuple
 
 
-class Direction(NamedTuple):
+class RecordDirection(NamedTuple):
     """A direction: vertical, or horizontal with its azimuth [deg] where that is known."""
 
     vertical: bool
     azimuth: float | None = None
 
 
-UP = Direction(vertical=True)
-HORIZONTAL = Direction(vertical=False)
+UP = RecordDirection(vertical=True)
+HORIZONTAL = RecordDirection(vertical=False)
 
 _VERTICAL = re.compile(
     r"v|z|u|d|up|ud|du|dn|dwn|down|vrt|vert|vertical|vertic\w*|updown|upward\w*|downward\w*"
@@ -39,7 +39,7 @@ _NAMED = re.compile(
 _AZIMUTH = re.compile(r"(?:az|azimuth)?(\d{1,3})(?:deg|°|degrees)?", re.IGNORECASE)
 
 
-def direction_of(text: str) -> Direction | None:
+def direction_of(text: str) -> RecordDirection | None:
     """The direction that a word is; None for a word that is none that is known.
 
     >>> direction_of("U-D").vertical, direction_of("N00E").azimuth, direction_of("Pacoima")
@@ -51,13 +51,13 @@ def direction_of(text: str) -> Direction | None:
         return UP
     small = word.lower()
     if small in _COMPASS:
-        return Direction(vertical=False, azimuth=_COMPASS[small])
+        return RecordDirection(vertical=False, azimuth=_COMPASS[small])
     if match := _BEARING.fullmatch(word):
-        return Direction(vertical=False, azimuth=_of_bearing(*match.groups()))
+        return RecordDirection(vertical=False, azimuth=_of_bearing(*match.groups()))
     if _AXIS.fullmatch(word):
-        return Direction(vertical=False, azimuth=_AXIS_AZIMUTHS[small[0]])
+        return RecordDirection(vertical=False, azimuth=_AXIS_AZIMUTHS[small[0]])
     if (match := _AZIMUTH.fullmatch(word)) and float(match[1]) <= 360.0:
-        return Direction(vertical=False, azimuth=float(match[1]))
+        return RecordDirection(vertical=False, azimuth=float(match[1]))
     return HORIZONTAL if _NAMED.fullmatch(word) else None
 
 
@@ -74,7 +74,7 @@ _QUALIFIED = re.compile(
 )
 
 
-def direction_in(name: str) -> Direction | None:
+def direction_in(name: str) -> RecordDirection | None:
     """The direction that a name is, or that stands behind `acc` in it, as in `acc_ns`."""
     if (found := direction_of(name)) is not None:
         return found

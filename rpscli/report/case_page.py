@@ -31,7 +31,15 @@ from rpscli.report.figures.structure import bearing_figure, draw_structure
 from rpscli.report.files import leaves, versions
 from rpscli.report.limits import limits_table, verdicts_in_short
 from rpscli.report.motions import record_table
-from rpscli.report.page import Block, Code, Notice, Picture, Section, page_look, pictures
+from rpscli.report.page import (
+    Block,
+    Listing,
+    Notice,
+    Picture,
+    ReportSection,
+    page_look,
+    pictures,
+)
 from rpscli.report.table import Column, Table
 from rpscli.sweep.statistics.verdicts import Verdict
 
@@ -63,7 +71,7 @@ def motions_section(
     title: str,
     look: Look,
     which: str = "before they are scaled",
-) -> Section:
+) -> ReportSection:
     """Records of a study, or of several histories: peaks, digests and spectra."""
     blocks: list[Block] = [*unreadable]
     if motions:
@@ -90,7 +98,7 @@ def motions_section(
         )
     if len(motions) > MOST_ROWS:
         blocks.append(f"The table shows the first {MOST_ROWS} of {len(motions)} records.")
-    return Section("Ground motions", blocks)
+    return ReportSection("Ground motions", blocks)
 
 
 CAPTIONS = {
@@ -140,12 +148,12 @@ def page_sections(
     short: Iterable[Block],
     warnings: Iterable[str],
     inputs: Iterable[Block],
-    results: Iterable[Section],
+    results: Iterable[ReportSection],
     commands: Iterable[Sequence[str]],
     stored: Iterable[Block],
     both: bool,
     which: Sequence[Block] = (),
-) -> list[Section]:
+) -> list[ReportSection]:
     """All of a page in its order; `which` says of which system
     structure and formulas are.
     """
@@ -154,17 +162,19 @@ def page_sections(
     told = [Notice(f"Warning: {text}") for text in warnings]
     repeat: list[Block] = [
         "From the folder in which this page was made, with the same versions:",
-        Code("\n".join(map(shlex.join, commands))),
+        Listing("\n".join(map(shlex.join, commands))),
         *stored,
     ]
     return [
-        Section("In short", [*short, *told]),
-        Section("The structure", [*which, *structure_blocks(structure, title, look)]),
-        Section("Input", [*inputs]),
-        Section("Derived quantities", [*which, *derived_blocks(structure, podium)]),
+        ReportSection("In short", [*short, *told]),
+        ReportSection(
+            "The structure", [*which, *structure_blocks(structure, title, look)]
+        ),
+        ReportSection("Input", [*inputs]),
+        ReportSection("Derived quantities", [*which, *derived_blocks(structure, podium)]),
         *results,
-        Section("Limits of the model", [hidden_table(both=both)]),
-        Section("How to repeat it", repeat),
+        ReportSection("Limits of the model", [hidden_table(both=both)]),
+        ReportSection("How to repeat it", repeat),
     ]
 
 
@@ -307,7 +317,7 @@ def history_short(
 
 def ground_section(
     ground: MotionComponents, structure: PodiumStructure, look: Look
-) -> Section:
+) -> ReportSection:
     """The motion of one history, and the periods of the building in its spectra."""
     across = structure.superstructure_y
     drawn = [
@@ -317,7 +327,7 @@ def ground_section(
     measured = [
         record_table(each, intensity_measures(each)) for each in horizontal(ground)
     ]
-    return Section("Ground motion", [*measured, *drawn])
+    return ReportSection("Ground motion", [*measured, *drawn])
 
 
 def horizontal(*grounds: MotionComponents) -> list[GroundMotion]:
@@ -331,19 +341,19 @@ def response_section(
     files: Iterable[tuple[str, object]],
     title: str = "Response",
     figures: Iterable[str] = (),
-) -> Section:
+) -> ReportSection:
     """The tables of a history, and all of its figures or some."""
     wanted = {*figures} or CAPTIONS.keys() - {"column"}
     drawn = [
         (CAPTIONS[stem], each) for stem, each in pictures(files).items() if stem in wanted
     ]
     shown = [Picture(each, caption) for caption, each in drawn]
-    return Section(title, [*timehistory.demand_tables(result), *shown])
+    return ReportSection(title, [*timehistory.demand_tables(result), *shown])
 
 
 def column_sections(
     result: TimeHistoryResult, files: Iterable[tuple[str, object]]
-) -> Iterator[Section]:
+) -> Iterator[ReportSection]:
     """What the most loaded column has to carry, with the numbers of
     its worst instants put in.
     """
@@ -358,7 +368,7 @@ def column_sections(
         " on steel by EN 1337-4 has 2.0 f_u on lines, for rotations up to"
         f" {STEEL_ROTATION:g} rad."
     )
-    yield Section("Forces and pressures of a column", [
+    yield ReportSection("Forces and pressures of a column", [
         (
             f"Maxima at instants of a dense trace under {result.record.name}, without"
             f" {without}."

@@ -152,7 +152,7 @@ MOST_BYTES = 1_000_000  # of a page that can be sent by mail and read on a telep
 FOR_FIGURES = 840_000  # letters for all figures of a page together
 
 
-class Code(str):
+class Listing(str):
     """Text that is typed as it stands."""
 
     __slots__ = ()
@@ -164,11 +164,11 @@ class Notice(str):
     __slots__ = ()
 
 
-Block = str | Table | Picture | Code | Notice
+Block = str | Table | Picture | Listing | Notice
 
 
 @dataclass(frozen=True)
-class Section:
+class ReportSection:
     """A heading and what stands under it."""
 
     title: str
@@ -178,7 +178,7 @@ class Section:
 def page(
     title: str,
     subtitle: str,
-    sections: Sequence[Section],
+    sections: Sequence[ReportSection],
     name: str,
     signed: Mapping[str, str | None] | None = None,
 ) -> bytes:
@@ -252,7 +252,7 @@ def _block(block: Block, drawn: Iterator[Markup]) -> Markup:
             return _table(block)
         case Picture():
             return next(drawn)
-        case Code():
+        case Listing():
             return element("pre", block)
         case Notice():
             return element("p", block, class_="notice")

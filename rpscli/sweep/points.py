@@ -43,7 +43,7 @@ from rpscli.sweep.systems import (
 from rpscli.units import as_written
 
 
-class Places(NamedTuple):
+class AxisIndices(NamedTuple):
     """(points,) places of points among systems, records, scales and members."""
 
     system: Indices
@@ -128,10 +128,10 @@ class StudyPoints:
         return self.context.system(index, self.properties[index].values)
 
     @cached_property
-    def places(self) -> Places:
+    def places(self) -> AxisIndices:
         """Of all points."""
         shape = (len(self.properties), *self._within)
-        return Places(*frozen(np.unravel_index(np.arange(len(self)), shape)))
+        return AxisIndices(*frozen(np.unravel_index(np.arange(len(self)), shape)))
 
     @cached_property
     def factors(self) -> Array:

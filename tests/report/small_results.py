@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
-from rpscli.analyses.trace import Direction
+from rpscli.analyses.trace import DirectionTrace
 from rpscli.model.bearing import Bearing
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import ModalDamping, Superstructure, profile_stiffnesses
@@ -112,7 +112,7 @@ def turned(kind="rolls", angle=ANGLE):
     """A history in a vertical plane at an azimuth (samples,) [rad], told in x and y."""
     plane = KINDS[kind]()
     trace = plane.trace
-    names = [each.name for each in fields(Direction)]
+    names = [each.name for each in fields(DirectionTrace)]
     cosine, sine = np.broadcast_arrays(np.cos(angle), np.sin(angle), trace.time)[:2]
 
     def along(part):
@@ -125,7 +125,7 @@ def turned(kind="rolls", angle=ANGLE):
         "rotation": np.abs(trace.rotation),
         "rotation_rate": np.sign(trace.rotation) * trace.rotation_rate,
         "azimuth": np.where(trace.rotation == 0.0, 0.0, azimuth),
-        "y": Direction(**along(sine)),
+        "y": DirectionTrace(**along(sine)),
     }
     x, y = (
         replace(plane.record, acceleration=plane.record.acceleration * part, name=name)

@@ -19,7 +19,7 @@ from report.small_results import (
     turned,
 )
 from rpscli import figures
-from rpscli.analyses.trace import Direction
+from rpscli.analyses.trace import DirectionTrace
 from rpscli.errors import UsageError
 from rpscli.report.figures import history
 from rpscli.report.figures.floors import draw_accelerations
@@ -40,7 +40,7 @@ def test_a_plane_motion_is_found_again(kind):
     side = 1.0 if seen.rotation[peak] * plane.rotation[peak] >= 0.0 else -1.0
     if not plane.rotation.any():  # it never leans, and is looked at along x
         side = 1.0 / np.cos(ANGLE)
-    names = ["rotation", "rotation_rate", *(each.name for each in fields(Direction))]
+    names = ["rotation", "rotation_rate", *(each.name for each in fields(DirectionTrace))]
     for name in names:
         if getattr(plane, name) is None:  # nothing yields
             continue

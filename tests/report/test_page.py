@@ -21,10 +21,10 @@ from rpscli.report.figures.look import USUAL
 from rpscli.report.files import Drawing, undrawn
 from rpscli.report.page import (
     MOST_BYTES,
-    Code,
+    Listing,
     Notice,
     Picture,
-    Section,
+    ReportSection,
     is_about,
     page,
     page_look,
@@ -76,7 +76,7 @@ def test_a_figure_that_fails_is_told_in_its_place():
         raise RuntimeError("no <figure>")
 
     broken = Picture({"svg": Drawing("x.svg", fails)}, "a caption")
-    content = page("a", "b", [Section("c", [broken, "the results"])], "d").decode()
+    content = page("a", "b", [ReportSection("c", [broken, "the results"])], "d").decode()
     assert "x.svg is not drawn: RuntimeError: no &lt;figure&gt;" in content
     assert "the results" in content
     assert len(undrawn(broken.files.values())) == 1
@@ -86,11 +86,11 @@ def test_text_is_never_taken_for_tags():
     blocks = [
         HOSTILE,
         Notice(HOSTILE),
-        Code(HOSTILE),
+        Listing(HOSTILE),
         Table.of_texts([HOSTILE], [[HOSTILE]]),
         *structure_blocks(structure(), HOSTILE, USUAL),
     ]
-    parsed = Parsed(page(HOSTILE, HOSTILE, [Section(HOSTILE, blocks)], HOSTILE))
+    parsed = Parsed(page(HOSTILE, HOSTILE, [ReportSection(HOSTILE, blocks)], HOSTILE))
     assert "script" not in {tag for tag, _ in parsed.tags}
     shown = [text for text in parsed.texts if "alert" in text]
     # Title, heading, subtitle, contents, section, four blocks (a table has two), and the
@@ -104,7 +104,7 @@ def test_text_is_never_taken_for_tags():
 def test_names_are_used_once_and_nothing_is_fetched(figures_of_history):
     # The same drawings twice: matplotlib gives them the same names.
     content = page(
-        "a", "b", [Section("c", [*figures_of_history, *figures_of_history])], "d"
+        "a", "b", [ReportSection("c", [*figures_of_history, *figures_of_history])], "d"
     )
     parsed = Parsed(content)
     names = Counter(parsed.all("id"))
@@ -138,7 +138,7 @@ def test_a_figure_of_many_points_is_an_image_and_the_page_stays_small():
         png = file.getvalue()
     heavy = picture(start + marks + b"</svg>", "many points", png)
     light = picture(start + b"</svg>", "few points", png)
-    content = page("a", "b", [Section("c", [heavy] * 20 + [light])], "d")
+    content = page("a", "b", [ReportSection("c", [heavy] * 20 + [light])], "d")
     tags = Counter(tag for tag, _ in Parsed(content).tags)
     assert (tags["img"], tags["svg"]) == (20, 1)  # one heavy drawing is too much
     assert len(content) < MOST_BYTES
@@ -149,20 +149,22 @@ def test_coordinates_are_rounded_and_factors_are_not():
         b'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9">'
         b'<path d="M 1.23456 -0.00049" transform="scale(0.015625)"/></svg>'
     )
-    content = page("a", "b", [Section("c", [picture(drawing, "x")])], "d")
+    content = page("a", "b", [ReportSection("c", [picture(drawing, "x")])], "d")
     assert b'd="M 1.23 -0.00"' in content
     assert b"scale(0.015625)" in content
 
 
 def test_a_page_knows_what_it_is_about():
-    made = partial(page, "a title", "b", [Section("c", ["d"])])
+    made = partial(page, "a title", "b", [ReportSection("c", ["d"])])
     assert is_about(made('six "storeys" & <more>'), 'six "storeys" & <more>')
     assert not is_about(made("six"), "six_storeys")
     assert not is_about(b"notes of mine about six", "six")
 
 
 def test_empty_sections_are_left_out_and_the_others_numbered():
-    parsed = Parsed(page("a", "b", [Section("none", []), Section("some", ["text"])], "c"))
+    parsed = Parsed(
+        page("a", "b", [ReportSection("none", []), ReportSection("some", ["text"])], "c")
+    )
     assert "none" not in parsed.texts
     assert "1  some" in parsed.texts
 
@@ -197,7 +199,7 @@ def test_a_long_record_leaves_the_page_small_enough_to_be_sent():
     blocks = [Picture(found, stem) for stem, found in pictures(files).items()]
     blocks.append(motion_pictures(result.record, USUAL))
     assert (
-        len(page("a", "b", [Section("c", blocks)], "d")) < 0.9 * MOST_BYTES
+        len(page("a", "b", [ReportSection("c", blocks)], "d")) < 0.9 * MOST_BYTES
     )  # tables: a tenth
 
 

@@ -21,7 +21,7 @@ from rpscli.report.figures import style
 from rpscli.report.figures.look import Look
 from rpscli.report.files import Files
 from rpscli.report.limits import bound_text
-from rpscli.report.page import Block, Picture, Section, page_look, pictures
+from rpscli.report.page import Block, Picture, ReportSection, page_look, pictures
 from rpscli.report.table import Table, columns_of, csv_text, headed, large, shown_beside
 from rpscli.sweep.statistics.fractiles import HIGH, LOW, Share, fractiles, share_of
 from rpscli.sweep.statistics.summary import Records
@@ -284,7 +284,7 @@ class Budget:
         if any(effect.quantity for effect in self.effects):
             yield from style.figure_files({"budget": self.figure}, look).items()
 
-    def section(self, look: Look, record: str) -> Section:
+    def section(self, look: Look, record: str) -> ReportSection:
         """Of a page: pictures above the tables, sentences and options."""
         caption = (
             f"What moves the results under {record}, over the case as it is; {CAPTION}."
@@ -293,7 +293,7 @@ class Budget:
             Picture(files, caption)
             for files in pictures(self.files(page_look(look))).values()
         ]
-        return Section("Sensitivity of the results", [*blocks, *self.tables()])
+        return ReportSection("Sensitivity of the results", [*blocks, *self.tables()])
 
     def figure(self, figure: style.Figure) -> None:
         """A tornado: a panel a result, bars from the case as it is, sorted; records as

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from rpscli.commands import inputs
     from rpscli.commands.shell.terminal import Terminal
     from rpscli.report.figures.look import Look
-    from rpscli.report.page import Section
+    from rpscli.report.page import ReportSection
 
 
 def budget_section(
@@ -20,7 +20,7 @@ def budget_section(
     terminal: Terminal,
     look: Look,
     label: str,
-) -> Section:
+) -> ReportSection:
     """The budget of a case under the first of its motions, called `label`."""
     from rpscli.tools.budget.command import case_budget
 
