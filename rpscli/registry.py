@@ -71,7 +71,7 @@ def of_tools(kind: str) -> dict[str, str]:
 
 
 def loaded(target: str) -> Any:
-    """What a target names, imported now."""
+    """Object that a target names, imported now."""
     from importlib import import_module
 
     module, _, attribute = target.partition(":")
@@ -215,7 +215,7 @@ def blaming(
 
 
 class _Printing(local):
-    """How deep a thread is inside functions of packages."""
+    """Depth of a thread inside functions of packages."""
 
     depth = 0
 
@@ -225,8 +225,8 @@ _printing = _Printing()
 
 @contextmanager
 def printed_aside() -> Iterator[None]:
-    """What this thread prints meanwhile goes to the standard
-    error, if the standard output is `Shared`.
+    """Send what this thread prints meanwhile to the standard error, if the standard
+    output is `Shared`.
     """
     _printing.depth += 1
     try:

@@ -132,7 +132,7 @@ def _rows(
 
 
 def _separator_of(head: str) -> str:
-    """What separates the cells of a line of titles, outside of brackets and quotes."""
+    """Separator of the cells of a line of titles, outside of brackets and quotes."""
     bare = re.sub(r"\"[^\"]*\"|\[[^\]]*\]|\([^)]*\)", "", head)
     return next((each for each in "\t;," if each in bare), "\t")  # one column
 

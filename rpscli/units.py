@@ -216,7 +216,7 @@ def si_value(text: str, unit: str) -> float:
 
 
 def computed_remedy(text: str, unit: str) -> str:
-    """What was perhaps meant by a value of another kind, in the SI unit; or nothing.
+    """Hint at what a value of another kind perhaps meant, in the SI unit; or nothing.
 
     >>> computed_remedy("8.5 deg", "1"), computed_remedy("2.5 Hz", "s")
     ('; an angle? tan(8.5 deg) = 0.149', '; a frequency? 1/(2.5 Hz) = 0.4 s')

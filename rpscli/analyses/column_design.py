@@ -49,7 +49,7 @@ class ColumnInstant:
 
 @dataclass(frozen=True)
 class ColumnDemand:
-    """What the most loaded column has to carry."""
+    """Demands on the most loaded column."""
 
     instants: tuple[ColumnInstant, ...]  # At which each result is largest
     at_largest_moment: ColumnState
@@ -64,8 +64,8 @@ class ColumnDemand:
 
 
 def corner_of(structure: PodiumStructure, *, both: bool) -> float:
-    """How much farther from its axis a column bears on a corner than
-    on its inscribed circle: sqrt(2) of square ones that tilt to any side.
+    """Ratio by which a column bears farther from its axis on a corner than on its
+    inscribed circle: sqrt(2) of square ones that tilt to any side.
     """
     square = structure.column is not None and structure.column.section == "square"
     return math.sqrt(2.0) if both and square else 1.0

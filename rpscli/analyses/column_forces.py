@@ -165,8 +165,8 @@ def sliding_time(structure: PodiumStructure, trace: Trace) -> float:
 
 
 def _directions(trace: Trace) -> list[tuple[DirectionTrace, Array]]:
-    """What a history has in x and, of both components, in y, with the
-    part of the tilt to there.
+    """Histories in x and, of both components, in y, each with the part of the tilt to
+    there.
     """
     if trace.y is None or trace.azimuth is None:
         return [(trace, np.sign(trace.rotation))]

@@ -1,6 +1,6 @@
-"""What results need of a structure: in words, and whether a structure has it.
+"""Needs of results: words for what a structure must have, and whether it has it.
 
-The one list of it: for limits in files, for `--fail-on`, for studies and their reports.
+The one list of them: for limits in files, for `--fail-on`, for studies and their reports.
 """
 
 from __future__ import annotations

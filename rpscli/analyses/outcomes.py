@@ -77,9 +77,7 @@ def outcomes_of(left: Record) -> NDArray[np.str_]:
 
 
 def refusals(law: OwnLaw) -> Iterator[str]:
-    """What the functions of a law of another package said where
-    they gave no finite number.
-    """
+    """Refusals of the functions of a law that gave no finite number, in their words."""
     from rpscli.physics.own_laws import said_of
 
     for function, taken in law.taken().items():

@@ -57,11 +57,11 @@ class ResultQuantity(NamedTuple):
 
     @property
     def needed(self) -> str:
-        """What a structure must have to have it, in words; empty if all have it."""
+        """Words for what a structure must have to have it; empty if all have it."""
         return NEEDS[self.needs].words if self.needs else ""
 
     def lacks(self, structure: PodiumStructure) -> str:
-        """What a structure lacks to have it, in words; empty if it has it."""
+        """Words for what a structure lacks to have it; empty if it has it."""
         lacking = self.needs and not NEEDS[self.needs].met_by(structure)
         return self.needed if lacking else ""
 

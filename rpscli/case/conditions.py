@@ -71,7 +71,7 @@ class Condition:
         return self.fractile if self.from_below else 1.0 - self.fractile
 
     def under(self, recordings: int) -> Condition:
-        """What is judged under so many recordings: of few the largest, not the mean."""
+        """The condition under so many recordings: of few the largest, not the mean."""
         few = self.of == "mean" and recordings < FOR_A_MEAN
         return replace(self, of=None) if few else self
 
@@ -144,7 +144,7 @@ def case_conditions(
 def lacking_results(
     conditions: Iterable[Condition], structure: PodiumStructure
 ) -> list[str]:
-    """What conditions need that a structure does not have, each with its source."""
+    """Needs of conditions that a structure does not meet, each with its source."""
     found = (
         (each, LIMITS[each.name].lacks(structure))
         for each in conditions

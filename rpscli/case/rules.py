@@ -64,7 +64,7 @@ def _one_of(key: str, section: object, text: str, *keys: str) -> Iterator[Fault]
 
 @dataclass(frozen=True)
 class Rules:
-    """What joins the keys of a case whose sections are valid."""
+    """Rules that join the keys of a case whose sections are valid."""
 
     file: CaseFile
     document: Document

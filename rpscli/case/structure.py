@@ -77,7 +77,7 @@ OF_THE_MODEL = {
 
 
 def refused_by_model(error: ValueError, document: Document) -> Fault:
-    """What the model refuses, at the key that it is about."""
+    """Fault for a refusal by the model, at the key that it is about."""
     text = str(error)
     key = OF_THE_MODEL.get(text.split(maxsplit=1)[0].strip(":,"), "podium")
     if document.has(path_of(DIMENSIONS)) and key.startswith(BEARING):

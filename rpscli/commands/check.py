@@ -160,7 +160,7 @@ def check_tables(
     limits: Sequence[Condition],
     unknown: Collection[str] = (),
 ) -> Iterator[Part]:
-    """What leads; geometry; masses, statics and periods; the record; the limits."""
+    """Leading quantities; geometry; masses, statics, periods; the record; the limits."""
     yield Heading(document["case"]["title"])
     pair = document["record"] and document["record"]["y"]
     dynamics = (*DYNAMICS, FIRST_PERIOD, *UPWARDS, *CONTACT)
@@ -267,7 +267,7 @@ def device_tables(
 
 
 def _end_of_return(row: Mapping[str, Any]) -> str:
-    """Whether the storey comes back, or how far from upright it stays."""
+    """Words for whether the storey comes back, or how far from upright it stays."""
     if row["recentres"]:
         return "yes"
     rest = row["rest"]
@@ -281,7 +281,7 @@ def _end_of_return(row: Mapping[str, Any]) -> str:
 
 
 def _about_returns(back: Sequence[Mapping[str, Any]]) -> Iterator[str]:
-    """What the columns are, and where friction holds the storey."""
+    """Meaning of the columns, and where friction holds the storey."""
     text = (
         "at most: the largest friction against which it would come back upright from"
         " there, slowly"

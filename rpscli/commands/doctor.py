@@ -108,7 +108,7 @@ def _surroundings() -> list[tuple[str, str, str]]:
 
 
 def _processor() -> list[tuple[str, str, str]]:
-    """What kernels are compiled for."""
+    """Row for the processor for which kernels are compiled."""
     if not installed("llvmlite"):
         return []
     from rpscli.compiler.objects import can_fuse, processor

@@ -112,7 +112,7 @@ def command(words: tuple[str, ...], terminal: Terminal) -> None:
 
 
 def _listing(offers: list[Offer], *, everything: bool) -> Iterator[Part]:
-    """What other packages add, as a table; words if that is asked for and there is none."""
+    """Table of what other packages add; words if that is asked for and there is none."""
     heads = ("group", "name", "package", "is")
     rows = [(f"rpscli.{o.kind}", o.name, o.package, o.fault or o.meaning) for o in offers]
     if rows:

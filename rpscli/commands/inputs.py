@@ -91,7 +91,8 @@ Draw = Callable[[Callable[[int, int], None]], bytes]
 
 
 def film_of(subject: str) -> Callable[..., Draw]:
-    """What makes the animation of a subject from a result, a title, a request and a look.
+    """Function that makes the animation of a subject from a result, a title, a request
+    and a look.
 
     What cannot be drawn is refused then, before anything is written.
     """

@@ -207,8 +207,8 @@ class Swept(NamedTuple):
         return few
 
     def _told(self) -> Iterator[Part]:
-        """What counts as overturned, verdicts, reports; a remark
-        of several is said once.
+        """Parts on what counts as overturned, verdicts, reports; a remark of several is
+        said once.
         """
         result = self.result
         if result.summary is not None:

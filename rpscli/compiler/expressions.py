@@ -70,7 +70,7 @@ class Scope:
 
 
 class Writer(Protocol):
-    """What the other modules give: calls of functions, and arrays that are known."""
+    """Methods of the other modules: calls of functions, and arrays that are known."""
 
     def call(self, body: Body, function: Any, arguments: list[Value]) -> Value:
         """Write the call of a function of Python."""

@@ -281,7 +281,7 @@ def belongs(function: Any, value: Value) -> bool:
 
 
 def known_part(function: Any, value: Value) -> Any:
-    """What of an argument tells versions apart."""
+    """Part of an argument that tells versions apart."""
     if belongs(function, value):
         assert isinstance(value, Known)
         return number_kind(value.value), repr(value.value)
@@ -382,7 +382,7 @@ def scope_of(function: Any, names: dict[str, Value]) -> Scope:
 def in_place(
     body: Body, function: Any, node: ast.FunctionDef, given: list[Value]
 ) -> Value | None:
-    """What a function returns whose known tests leave one short expression; else None."""
+    """Value of a function whose known tests leave one short expression; else None."""
     names = {of.arg: value for of, value in zip(node.args.args, given, strict=True)}
     outside = body.scope
     written_so_far = len(body.lines)

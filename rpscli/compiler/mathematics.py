@@ -53,9 +53,7 @@ def call_at(address: int, numbers: tuple[float, ...]) -> float:
 
 
 def known(function: Callable[..., Any], *arguments: Value) -> Known | None:
-    """What Python makes of numbers that are known; None if they
-    are not, or if it raises.
-    """
+    """Result of Python for known numbers; None if they are not, or if it raises."""
     given = [
         each.value
         for each in arguments

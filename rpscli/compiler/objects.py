@@ -29,7 +29,9 @@ DIGEST = 32
 
 @cache
 def processor() -> str:
-    """What machine code is made for, and by what: it is of no use elsewhere."""
+    """Processor that machine code is made for, and its compiler: elsewhere the code is of
+    no use.
+    """
     features = llvm.get_host_cpu_features().flatten()
     version = ".".join(map(str, llvm.llvm_version_info))
     triple = llvm.get_process_triple()

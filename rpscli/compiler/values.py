@@ -36,9 +36,7 @@ class Widened(Exception):
 
 @dataclass(slots=True, frozen=True)
 class Known:
-    """What is known while compiling: a number, a tuple, an
-    array, a function, a module.
-    """
+    """A value known while compiling: number, tuple, array, function or module."""
 
     value: Any
 
@@ -154,7 +152,7 @@ def elements_of(value: Value) -> tuple[Value, ...] | None:
 
 
 def kind_of(value: Value) -> Kind:
-    """What is to be known of a value to write code for others like it."""
+    """Kind of a value: all that code for others like it depends on."""
     if isinstance(value, Number):
         return value.kind
     if isinstance(value, Known) and is_number(value.value):
@@ -347,7 +345,7 @@ class Code:
 
 
 def described(value: Value) -> str:
-    """What a value is, for a message."""
+    """Words for a value in a message."""
     if isinstance(value, Known):
         return f"`{getattr(value.value, '__name__', value.value)!s}`"
     words = {

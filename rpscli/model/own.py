@@ -32,7 +32,7 @@ SMALL_RATE = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class OwnLaw:
-    """What all such laws have.
+    """Constants and checks that all such laws have.
 
     Parameters
     ----------

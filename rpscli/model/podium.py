@@ -237,8 +237,8 @@ class PodiumStructure(Shown):
 
     @property
     def ways(self) -> dict[str, PodiumStructure]:
-        """What vibrates in x and, where that differs, in y, by
-        an empty name and ``_y``.
+        """Structures that vibrate in x and, where that differs, in y, by an empty name
+        and ``_y``.
         """
         return (
             {"": self, "_y": self.across}

@@ -310,8 +310,8 @@ class Superstructure(Shown):
 
     @cached_property
     def upwards(self) -> Superstructure | None:
-        """What vibrates upwards: the floors on equal springs; None
-        where they ride on the beam.
+        """The building that vibrates upwards: the floors on equal springs; None where
+        they ride on the beam.
         """
         if self.vertical_period is None:
             return None

@@ -53,8 +53,8 @@ def first_phase(system: Record) -> int:
 
 @compiled
 def enter_on_bed(s: Record, l: int, system: Record, phase: int) -> None:
-    """What a bed changes in a phase of motion that is entered:
-    constants, range, steps.
+    """Set what a bed changes in a phase of motion that is entered: constants, range,
+    steps.
     """
     s.bed_k[l] = 0.0
     s.bed_c[l] = 0.0

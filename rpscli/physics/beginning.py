@@ -203,7 +203,7 @@ def load_modes(s: Record, l: int, system: Record, axis: int) -> None:
 
 @compiled
 def load_request(s: Record, l: int, request: Record, system: Record) -> None:
-    """What is followed, and for how long."""
+    """Load what is to be followed, and for how long."""
     for axis in range(ways_of(s)):
         s.record[axis, l] = request.record if axis == 0 else request.record_y
     s.npts[l] = request.npts

@@ -1,4 +1,4 @@
-"""What a step demands of contacts, devices and floors, and how far it tilts.
+"""Demands of a step on contacts, devices and floors, and how far it tilts.
 
 The forces of contacts are compared with the largest so far at the ends of all steps, and
 looked at within where they come near.

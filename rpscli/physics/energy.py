@@ -134,7 +134,7 @@ def strain_energy(s: Record, l: int) -> float:
 
 @compiled
 def slip_energy(s: Record, l: int) -> float:
-    """What plastic drifts change in the energy of elastic springs [J]."""
+    """Change of the energy of elastic springs by plastic drifts [J]."""
     energy = 0.0
     for r in range(ways_of(s) * s.n if s.yields[l] > 0 else 0):
         back = (1.0 - s.hardening[l]) * s.stiffness[r, l] * s.middle[r, l]

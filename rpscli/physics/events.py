@@ -241,8 +241,8 @@ turned back, by rounding."""
 
 @compiled
 def storey_paths(s: Record, l: int, systems: Record, r: int) -> tuple[Quintic, Quintic]:
-    """What falls below zero where a storey yields to the left or to the
-    right, or no longer does.
+    """Values that fall below zero where a storey yields to the left or to the right, or
+    no longer does.
 
     Cubics over the step: its force is so far from either strength; or
     both the rate of its drift.
@@ -478,8 +478,8 @@ def squared_margin(s: Record, l: int) -> Quintic:
 
 @compiled
 def missing_low(s: Record, l: int, systems: Record) -> tuple[float, float]:
-    """What the end of the step still is above the event, and its
-    rate: of a tilt that falls.
+    """Amount by which the end of the step is still above the event, and its rate: of a
+    tilt that falls.
     """
     return s.new_x[l] - s.x_low[l], s.new_v[l]
 

@@ -1,4 +1,4 @@
-"""What a step demands of storeys and floors, at its ends and within.
+"""Demands of a step on storeys and floors, at its ends and within.
 
 A storey shear is a sum over modes, sum_r s_ir q_r, so that all of them cost n^2
 products a step, more than the motion itself. By Cauchy and Schwarz's inequality what
@@ -272,7 +272,7 @@ def write_between(
 
 @compiled
 def sums_at_start(s: Record, l: int) -> None:
-    """What the modes have changed by since the last look, where a step begins anew."""
+    """Sum up how the modes changed since the last look, where a step begins anew."""
     for axis in range(ways_of(s)):
         shear = 0.0
         acceleration = 0.0

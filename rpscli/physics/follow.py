@@ -162,8 +162,8 @@ def begin_histories(
 def look_after_all(
     state: Record, k: int, systems: Record, results: Record, output: KernelOutput
 ) -> None:
-    """What lanes alone are to do; those whose histories are over,
-    or go on otherwise, leave.
+    """Do what lanes alone are to do; those whose histories are over, or go on otherwise,
+    leave.
     """
     s = state[k]
     for l in range(lanes_of(s)):
@@ -357,8 +357,8 @@ STALL = 100
 
 @compiled
 def look_after(s: Record, l: int, systems: Record, output: KernelOutput) -> bool:
-    """What a lane alone is to do: switch at an event, store, end;
-    True if its history is over.
+    """Do what a lane alone is to do: switch at an event, store, end; True if its history
+    is over.
     """
     if s.outcome[l] != RUNNING:
         return True
@@ -394,7 +394,7 @@ def look_after(s: Record, l: int, systems: Record, output: KernelOutput) -> bool
 
 @compiled
 def switch(s: Record, l: int, systems: Record, log: Record, kind: int) -> None:
-    """What the event on which the step ended does."""
+    """Let the event happen on which the step ended."""
     for event in EVENTS:
         if kind == event.kind:
             event.happens(s, l, systems, log)

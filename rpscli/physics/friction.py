@@ -1,4 +1,4 @@
-"""What friction holds: a storey at rest on its ends, or tilted (section 11).
+"""A storey that friction holds: at rest on its ends, or tilted (section 11).
 
 In one plane it is held between two limits. A tilt to any side is held inside a
 closed curve of what pushes it, a circle where dampers alone hold it, and begins
@@ -149,8 +149,8 @@ def set_limits_stuck(s: Record, l: int, elastic: float, friction: float) -> None
 
 @compiled
 def push_at_rest(s: Record, l: int, V: Vector, time: float, V_up: float) -> float:
-    """What friction dampers push the cap beam with while a lane is at
-    rest [N]; writes `drive`.
+    """Write to `drive` the push of friction dampers on the cap beam while a lane is at
+    rest [N].
 
     In full contact the columns hold what they can, and friction dampers the rest: no
     less, or the columns would turn (11.13). A stuck storey is held by dampers and

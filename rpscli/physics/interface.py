@@ -1,4 +1,4 @@
-"""What the kernel is given and what it leaves behind: structured records, named fields.
+"""Input and output of the kernel: structured records, named fields.
 
 * ``system``: a structure and how it is followed; filled by `rpscli.analyses`, read
   only; where both components act two stand together, of the directions x and y, which

@@ -54,8 +54,8 @@ def first_event(s: Record, l: int, systems: Record) -> tuple[float, int, int]:
 
 @compiled
 def missing(s: Record, l: int, systems: Record) -> tuple[float, float]:
-    """What the end of the step still is above the event on which it
-    is to end, and its rate.
+    """Amount by which the end of the step is still above the event on which it is to end,
+    and its rate.
     """
     for event in EVENTS:
         if s.wanted[l] == event.kind:

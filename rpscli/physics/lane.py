@@ -185,7 +185,7 @@ def column_of(s: Record, l: int) -> ColumnConstants:
 
 @inlined
 def ends_of(s: Record, l: int) -> Ends:
-    """What a lane stands on."""
+    """Ends that a lane stands on."""
     return Ends(s.bed_k[l], s.bed_c[l], s.rim[l], s.sink[l], s.root[l])
 
 
@@ -328,7 +328,7 @@ class Motion(NamedTuple):
 
 
 class Response(NamedTuple):
-    """What a lane's storey does under base shears at a time, and the ground then."""
+    """Accelerations of a lane's storey and the ground, under base shears at a time."""
 
     a_x: float  # a_g [m/s2]
     a_y: float
@@ -438,7 +438,7 @@ def masses_of(s: Record, l: int) -> Masses:
 
 @inlined
 def pushed_beam(s: Record, l: int, V: Vector, now: Polar) -> Vector:
-    """What pushes the cap beam in x and y: base shears, devices and tendons [N]."""
+    """Push on the cap beam in x and y: base shears, devices and tendons [N]."""
     drive = vector(s, s.drive, l)
     V_x = V[0] + drive[0] + s.tied[l] * now.n
     return V_x, V[1] + drive[1] + s.tied[l] * now.t

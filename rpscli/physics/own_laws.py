@@ -32,7 +32,7 @@ class InterpretedLaw:
     refused: list[float] = field(default_factory=list)
 
     def __call__(self, *numbers: float) -> float:
-        """What the law gives."""
+        """Value that the law gives."""
         try:
             found = float(self.function(*numbers[: self.taken]))
         except KeyboardInterrupt:
@@ -44,7 +44,7 @@ class InterpretedLaw:
         return found
 
     def numbers_at(self, _name: str, _count: int) -> list[float]:
-        """What it was given where it gave no number."""
+        """Numbers that it was given where it gave no number."""
         return self.refused or [0.0]
 
 
@@ -87,8 +87,8 @@ def address_of(function: Law, taken: int) -> int:
 
 
 def said_of(function: Law, taken: int) -> str:
-    """What a law said, or gave, where it last gave no finite
-    number; empty if it always did.
+    """Words of a law, or the value it gave, where it last gave no finite number; empty if
+    it always did.
 
     It is asked once more, in Python, by what it was given then.
     """

@@ -99,8 +99,8 @@ def weights_stand(s: Record, l: int) -> bool:
 
 @compiled
 def spare_strength(s: Record, l: int, r: int) -> float:
-    """What a storey without force still bears before it yields
-    again, to either side [N].
+    """Strength that a storey without force still has before it yields again, to either
+    side [N].
     """
     back = s.hardening[l] * s.stiffness[r, l] * abs(s.middle[r, l])
     return s.strength[r, l] - back  # type: ignore[no-any-return]
@@ -154,7 +154,7 @@ def tilts_no_more(s: Record, l: int, system: Record) -> bool:
 
 @compiled
 def hardened_energy(s: Record, l: int) -> float:
-    """What plastic drifts keep stored in a building without forces [J]."""
+    """Energy that plastic drifts keep stored in a building without forces [J]."""
     energy = 0.0
     for r in range(ways_of(s) * s.n if s.yields[l] > 0 else 0):
         back = s.hardening[l] * (1.0 - s.hardening[l]) * s.stiffness[r, l]

@@ -1,4 +1,4 @@
-"""What histories need while they run, and where their results go."""
+"""Arrays that histories need while they run, and those that keep their results."""
 
 from __future__ import annotations
 

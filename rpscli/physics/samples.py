@@ -95,7 +95,7 @@ def elastic_of_row(s: Record, system: Record, axis: int, i: int) -> float:
 
 @compiled
 def slip_energy_of_row(s: Record, l: int, system: Record, axis: int) -> float:
-    """What plastic drifts change in their energy [J], see `laws.slip_energy`."""
+    """Change of the energy of springs by plastic drifts [J], see `laws.slip_energy`."""
     energy = 0.0
     for i in range(s.n):
         r = axis * s.n + i

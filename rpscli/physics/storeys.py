@@ -37,8 +37,8 @@ def slip_force(s: Record, l: int, r: int, elastic: float) -> float:
 
 @compiled
 def base_slip(s: Record, l: int, axis: int, elastic: float) -> float:
-    """What the first storey's plastic drift takes from the
-    base shear of the modes [N].
+    """Part of the base shear of the modes that the first storey's plastic drift takes
+    away [N].
     """
     return slip_force(s, l, axis * s.n, elastic) if s.yields[l] > 0 else 0.0
 

@@ -1,4 +1,4 @@
-"""What events do: how a lane goes on from where it is.
+"""Effects of events: how a lane goes on from where it is.
 
 In each the lane is at the event, and the kind of it and which are known.
 """
@@ -99,7 +99,7 @@ def pass_nearest(s: Record, l: int, systems: Record, log: Record) -> None:
 
 @compiled
 def lose_hold(s: Record, l: int, systems: Record, log: Record) -> None:
-    """What was held at rest is let go."""
+    """Let go what was held at rest."""
     if s.phase[l] == STUCK:
         slide(s, l, systems[0], log, s.which[l])
     else:
@@ -156,8 +156,8 @@ def hold(s: Record, l: int, system: Record) -> None:
 
 @compiled
 def stop_or_turn(s: Record, l: int, system: Record, log: Record) -> None:
-    """What slides too slowly to any side: be held, or go on along
-    what is not held (13.25).
+    """Hold what slides too slowly to any side, or let it go on along what is not held
+    (13.25).
     """
     grip = grip_at(s, l, 0)
     if grip.margin >= 0.0:
@@ -214,7 +214,7 @@ def slide(s: Record, l: int, system: Record, log: Record, side: int) -> None:
 
 @compiled
 def move_again(s: Record, l: int, log: Record) -> None:
-    """What was stuck is free, in the phase in which it was."""
+    """Free what was stuck, in the phase in which it was."""
     log_event(s, l, log, SLIDING, 0.0, 0.0, 0.0)
     phase = ROLLING if s.rolls[l] > 0.0 else ROCKING
     s.phase[l] = BEDDED if s.bed_k[l] > 0.0 else phase

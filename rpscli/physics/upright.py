@@ -345,7 +345,7 @@ def settle(s: Record, l: int, system: Record, log: Record, near: bool) -> None:
 
 @compiled
 def bounces_left_out(s: Record, l: int, system: Record) -> float:
-    """What the bounces left out add to the floors' velocity, over u_b' (3.5).
+    """Velocity that the bounces left out add to that of the floors, over u_b' (3.5).
 
     Floors that do not jump keep theirs: the beam stops. Friction lets the beam come back
     with k of the rate with which it left: k = 1 without it, 0 if it holds the beam where

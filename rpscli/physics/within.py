@@ -18,9 +18,7 @@ WITHIN = 1.5
 
 @inlined
 def bulge(s: Record, l: int, first: int, end: int) -> float:
-    """What the forces of springs in some axes may be within the
-    step above both ends [N].
-    """
+    """Most by which springs' forces in some axes exceed both ends within a step [N]."""
     square = 0.0
     for axis in range(first, end):
         change = s.new_dV[axis, l] - s.dV[axis, l]

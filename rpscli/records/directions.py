@@ -1,4 +1,4 @@
-"""What names of components mean: horizontal, with an azimuth where it is told, or up.
+"""Meaning of names of components: horizontal, with an azimuth where it is told, or up.
 
 The one vocabulary of directions: of headers, titles of columns and names of files.
 """

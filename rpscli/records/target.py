@@ -56,8 +56,8 @@ COMPONENTS: dict[Component, str] = {
 
 @dataclass(frozen=True)
 class TargetSpectrum:
-    """What the response spectra of motions are compared with, defined over
-    a `span` of periods [s].
+    """The spectrum that the response spectra of motions are compared with, defined over a
+    `span` of periods [s].
 
     `shape` is the pseudo-acceleration over the period. `pgv`, `pgd` and `pga` [m/s, m,
     m/s2] are peaks of the ground that go with it, None where the code gives none, the

@@ -354,8 +354,8 @@ def response_section(
 def column_sections(
     result: TimeHistoryResult, files: Iterable[tuple[str, object]]
 ) -> Iterator[ReportSection]:
-    """What the most loaded column has to carry, with the numbers of
-    its worst instants put in.
+    """Section on the demands on the most loaded column, with the numbers of its worst
+    instants put in.
     """
     if result.column_demand is None:
         return

@@ -194,7 +194,7 @@ class Drawing:
 
 
 def undrawn(drawings: Iterable[object]) -> list[str]:
-    """What to say of drawings that failed, those with one reason together."""
+    """Sentences on drawings that failed, those with one reason together."""
     names: dict[str, list[str]] = {}
     for each in drawings:
         if isinstance(each, Drawing) and each.reason:

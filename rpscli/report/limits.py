@@ -70,7 +70,7 @@ def requirement_text(condition: Condition) -> str:
 
 
 def verdict_text(verdict: Verdict) -> str:
-    """What a verdict rests on, in words."""
+    """Words for what a verdict rests on."""
     if verdict.interval:
         low, high = verdict.interval
         digits = digits_beside(verdict.value, verdict.condition.limit, 3)

@@ -29,7 +29,7 @@ from rpscli.report.table import (
 
 
 def record_document(motion: GroundMotion, measures: IntensityMeasures) -> dict[str, Any]:
-    """What was read, and its intensity measures in SI units."""
+    """Description of the motion that was read, and its intensity measures in SI units."""
     told = ("name", "source", "format", "description", "npts", "dt", "duration")
     return {
         **{name: getattr(motion, name) for name in told},
@@ -40,7 +40,7 @@ def record_document(motion: GroundMotion, measures: IntensityMeasures) -> dict[s
 
 
 def record_table(motion: GroundMotion, measures: IntensityMeasures) -> Table:
-    """What was read, and how strong it is."""
+    """Table of the motion that was read, and of how strong it is."""
     rows = [
         ("source", motion.source),
         ("format", motion.format),

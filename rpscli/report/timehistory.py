@@ -297,7 +297,7 @@ def _of_building(result: TimeHistoryResult) -> Iterator[Row]:
 
 
 def _with_dashpots(result: TimeHistoryResult) -> Iterator[Row]:
-    """What springs and dashpots carry together, where these carry a part that counts."""
+    """Base shear with dashpots of storeys, where these carry a part that counts."""
     both = result.base_shear_with_dashpots
     springs = result.max_base_shear
     if both is None or not both > (1.0 + DASHPOTS) * springs:
@@ -404,7 +404,7 @@ ROUND = (
 
 
 def passes_text(result: TimeHistoryResult) -> str | None:
-    """What both components assume at upright, and of columns; None where one acts."""
+    """Assumptions on both components at upright, and on columns; None where one acts."""
     if not result.both_components:
         return None
     if result.structure.bed is not None:
@@ -427,9 +427,7 @@ def passes_text(result: TimeHistoryResult) -> str | None:
 
 
 def accumulated(result: TimeHistoryResult) -> str:
-    """What is said of passes that follow each other ever nearer
-    to upright; empty without.
-    """
+    """Words on passes that follow each other ever nearer to upright; empty without."""
     if not (count := result.accumulations):
         return ""
     return (
@@ -536,7 +534,7 @@ def _by_storey(columns: Iterable[tuple[str, Array]]) -> Table:
 
 
 def _yielded_tables(result: TimeHistoryResult) -> Iterator[Table | str]:
-    """What a history did to storeys that yield, and which of them yield most."""
+    """Effects of a history on storeys that yield, and which of them yield most."""
     building = result.structure.superstructure
     if building is None or not building.yields:
         return

@@ -44,8 +44,8 @@ def checked(model: type[Model], document: Document) -> Model:
 def _told(
     model: type[BaseModel], document: Document, errors: list[ErrorDetails]
 ) -> Iterator[Fault]:
-    """What reading found, keys with nothing behind them, and what
-    pydantic says of the others.
+    """Faults: those found in reading, keys with nothing behind them, and the others that
+    pydantic reports.
     """
     known = fields_of(model)
     by_itself = {

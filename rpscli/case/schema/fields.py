@@ -91,9 +91,7 @@ BOUNDS: dict[str, tuple[str, Callable[[float, float], bool], str]] = {
 
 
 class Mark:
-    """What a value must be: `read` refuses what it is not, and
-    `json_schema` describes it.
-    """
+    """A rule for values: `read` refuses others, and `json_schema` describes it."""
 
     read: Callable[..., Any]
     json_schema: Callable[..., dict[str, Any]]

@@ -369,7 +369,7 @@ A_LIST = must_be(list, "a list, as in [overturning, fragility]")
 
 
 class StudyParts(TitledFile):
-    """What studies and designs say of a case, its records and its limits."""
+    """Keys of studies and designs about a case, its records and its limits."""
 
     base: Base
     """a case file, seen from the study's folder, or the case itself"""

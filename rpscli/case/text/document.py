@@ -40,7 +40,7 @@ class Position:
 
     @property
     def order(self) -> tuple[int, int, int]:
-        """What places are sorted by."""
+        """Key by which places are sorted."""
         return self.rank, self.line, self.column
 
     @property

@@ -1,4 +1,4 @@
-"""What all devices of a lane do together.
+"""Joint action of all devices of a lane.
 
 Linear dampers, friction and rolling resistance are sums of a lane, and lanes act
 together. What has branches or powers is looked at device by device.

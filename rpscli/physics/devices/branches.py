@@ -34,7 +34,7 @@ def may_be_watched(s: Record, l: int, which: int) -> bool:
 
 @inlined
 def slowing(s: Record, l: int, end: int) -> tuple[float, float]:
-    """What falls below zero where friction stops a tilt, and its slope.
+    """Value that falls below zero where friction stops a tilt, and its slope.
 
     In one plane the rate in the direction of friction; to any side
     |u_b'|^2 over that of a stop.
@@ -93,8 +93,8 @@ def watched(s: Record, l: int, which: int, end: int) -> tuple[bool, float, float
 
 @compiled
 def change_law(s: Record, l: int, log: Record, which: int) -> bool:
-    """What a watched value that fell below zero stands for; True if
-    friction now holds the tilt.
+    """Make the change that a watched value below zero stands for; True if friction now
+    holds the tilt.
     """
     if which == 0:  # what goes round goes on
         _, n, t, _, q = polar(s, l, tilt_of(s, l), rate_of(s, l))

@@ -1,5 +1,5 @@
-"""What is asked of a device: a function each, most of which most
-devices leave as they are here.
+"""Questions to a device: a function each, most of which most devices leave as they are
+here.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def no_tension(s: Record, l: int, i: int, e: float) -> float:
 
 @compiled
 def no_power(s: Record, l: int, i: int, at: Worked) -> float:
-    """What is dissipated beyond sums of the lane [W]."""
+    """Power dissipated beyond sums of the lane [W]."""
     return 0.0
 
 
@@ -48,7 +48,8 @@ def nothing_stored(s: Record, l: int, i: int, at: Worked) -> float:
 def nothing_watched(
     s: Record, l: int, i: int, end: int, second: bool
 ) -> tuple[bool, float, float]:
-    """What falls below zero where the law changes, and its slope, at an end of the step.
+    """Value that falls below zero where the law changes, and its slope, at an end of the
+    step.
 
     First whether there is such a one; a device may watch a second one.
     """

@@ -53,7 +53,7 @@ def watched(
     end: int,
     second: bool,
 ) -> tuple[bool, float, float]:
-    """What its law watches, positive on its branch, and the slope in time."""
+    """Value that its law watches, positive on its branch, and the slope in time."""
     if second or s.own_law[i, 1, l] == 0:
         return False, 0.0, 0.0
     sign = 1.0 if s.branch[i, l] == WORKING else -1.0

@@ -1,4 +1,4 @@
-"""What is kept of devices: largest forces and rates, and samples."""
+"""Results kept of devices: largest forces and rates, and samples."""
 
 from __future__ import annotations
 

@@ -69,7 +69,7 @@ def tension_of(s: Record, l: int, i: int, e: float) -> float:
 
 @compiled
 def power_of(s: Record, l: int, i: int, at: Worked) -> float:
-    """What one dissipates [W]."""
+    """Power that a device dissipates [W]."""
     for device in DEVICES:
         if s.device_kind[i, l] == device.kind:
             return device.power(s, l, i, at)  # type: ignore[no-any-return]
@@ -109,8 +109,8 @@ def watched_of(
     end: int,
     second: bool,
 ) -> tuple[bool, float, float]:
-    """What a device watches at the start (0) or the end (1) of
-    the step, and its slope.
+    """Value that a device watches at the start (0) or the end (1) of the step, and its
+    slope.
     """
     for device in DEVICES:
         if s.device_kind[i, l] == device.kind:

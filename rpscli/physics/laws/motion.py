@@ -28,19 +28,19 @@ def felt_gravity(
 def weight_arms(
     at: Place, ends: Ends, weigh: float, w: float, g: float, g_f: float
 ) -> float:
-    """What weight turns the tilt back by, over N m_c R^2 [1/s2]."""
+    """Moment by which weight turns the tilt back, over N m_c R^2 [1/s2]."""
     return ((at.B - ends.sink * w) * g + at.Bv * (g_f - g)) * weigh
 
 
 @inlined
 def bed_along(ends: Ends, x: float, p: float) -> float:
-    """What a bed in full contact turns the tilt back by [1/s2]."""
+    """Moment by which a bed in full contact turns the tilt back, likewise [1/s2]."""
     return ends.k * x + ends.c * p
 
 
 @inlined
 def bed_across(ends: Ends, per_x: float, q: float) -> float:
-    """What a bed, or a rim beyond it, holds against what goes round [1/s2]."""
+    """Resistance of a bed, or a rim beyond it, to what goes round [1/s2]."""
     return (ends.c + ends.rim * per_x) * q
 
 

@@ -81,9 +81,7 @@ class ColumnConstants(NamedTuple):
 
 
 class Ends(NamedTuple):
-    """What a bed changes: stiffness and damping of full contact,
-    and how a plane end lifts.
-    """
+    """Effects of a bed: stiffness, damping in full contact, and how a plane end lifts."""
 
     k: float  # in full contact [1/s2], else 0
     c: float  # damping there [1/s], else 0

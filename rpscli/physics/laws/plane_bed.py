@@ -1,4 +1,4 @@
-"""What a plane bed takes from the arms of contact, for floats and arrays (Theory (12.6)).
+"""Effect of a plane bed on the arms of contact, for floats and arrays (Theory (12.6)).
 
 Beyond x = phi_u the arm of the weight is B - sink w and that of the lift B - root w, with
 

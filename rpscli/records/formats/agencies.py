@@ -81,8 +81,8 @@ class Layout:
         return self.refusal.format(text.heads[0].partition("(")[0].strip()[:40])
 
     def contents(self, text: RecordText) -> list[Channel]:
-        """What the headers of all channels state; of a file without
-        any that can be read why.
+        """Channels with what their headers state; of a file without any that can be read
+        the reason.
         """
         if refusal := self.refused(text):
             return [Channel(refusal=refusal)]

@@ -180,8 +180,8 @@ _IS_STATEMENT = re.compile(rf":|=\s*[+-]?\.?\d|{PEAK_PATTERN}", re.IGNORECASE)
 
 
 def _titles(text: RecordText, table: _Table, width: int) -> list[ColumnTitle]:
-    """What the user says of the columns, else the last line that has a title for each;
-    empty without one.
+    """Titles of the columns that the user gives, else the last line that has a title for
+    each; empty without one.
     """
     if text.columns is not None:
         return _titles_given(text, text.columns, width)

@@ -1,4 +1,4 @@
-"""What headers of plain files say of the recording: station, earthquake, direction."""
+"""Statements of plain files' headers on the recording: station, earthquake, direction."""
 
 from __future__ import annotations
 

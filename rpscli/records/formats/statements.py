@@ -1,4 +1,4 @@
-"""What a header states, as it is printed: names, numbers, units behind them."""
+"""Statements of a header, as it is printed: names, numbers, units behind them."""
 
 from __future__ import annotations
 

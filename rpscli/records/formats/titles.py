@@ -77,7 +77,7 @@ class ColumnTitle(NamedTuple):
 
     @property
     def kind(self) -> str:  # noqa: PLR0911 -- a rule a line
-        """What the column holds, `UNKNOWN` where its title is not understood."""
+        """Kind of what the column holds, `UNKNOWN` where its title is not understood."""
         if _SPECTRAL.search(self.name):
             return "a spectrum"
         timed = re.fullmatch(_TIME_UNITS, self.unit, re.IGNORECASE) is not None

@@ -209,7 +209,7 @@ def log_ticks(axis: Axis) -> None:
 
 
 class Scale(NamedTuple):
-    """What an axis says of values in SI: a label, and ticks in the unit of the label."""
+    """An axis of values in SI: a label, and ticks in the unit of the label."""
 
     label: str
     factor: float = 1.0  # from SI to the numbers at the ticks

@@ -94,7 +94,7 @@ COEFFICIENTS = {
 
 
 class Ordinate(NamedTuple):
-    """What an axis shows of all points (points,) [SI]."""
+    """Values of all points on an axis (points,) [SI]."""
 
     name: str
     values: Array

@@ -71,7 +71,7 @@ class TableOptions(OverturningOptions):
 
 
 class Cell(NamedTuple):
-    """What a table has of some histories."""
+    """A cell of a table, of some histories."""
 
     numbers: Mapping[
         str, float | int | str | None

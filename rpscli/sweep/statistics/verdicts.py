@@ -57,8 +57,8 @@ class Verdict:
 
     @property
     def judged_by(self) -> str | None:
-        """What a condition on the mean was judged by: of few
-        recordings it is the worst.
+        """Word for the value by which a condition on the mean was judged: of few
+        recordings the worst.
         """
         if self.condition.of is None:
             return None
@@ -351,8 +351,8 @@ def _limits_known(
 
 
 def _is_known(table: PointTable, points: Indices, name: str) -> bool:
-    """Whether points have a result all the same; the mean of columns
-    is not that of one, beside systems that have this.
+    """True if points have a result all the same; the mean of columns is not that of one,
+    beside systems that have this.
     """
     others = table.layout.properties
     if name in OF_COLUMNS and any(name not in each.lacking for each in others):

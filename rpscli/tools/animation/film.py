@@ -339,14 +339,14 @@ def _draw_record(
 def of_history(
     result: TimeHistoryResult, title: str, wanted: FilmRequest, look: Look
 ) -> Callable[[Callable[[int, int], None]], bytes]:
-    """What draws a history; refuses a part that it does not have."""
+    """Function that draws a history; refuses a part that it does not have."""
     return partial(history_film, result, title, wanted, frame_plan(result, wanted), look)
 
 
 def of_modes(
     result: ModalResult, title: str, wanted: FilmRequest, look: Look
 ) -> Callable[[Callable[[int, int], None]], bytes]:
-    """What draws the modes."""
+    """Function that draws the modes."""
     return partial(modes_film, result, title, wanted, look)
 
 

@@ -86,7 +86,7 @@ def _row(
     sets: tuple[str, ...],
     motion: inputs.MotionRequest | str,
 ) -> BudgetRow:
-    """What `rps timehistory` would find; the sentence of a refusal."""
+    """Row that `rps timehistory` would find; the sentence of a refusal."""
     from rpscli.analyses.timehistory import time_history
     from rpscli.case.case import case_from_mapping
     from rpscli.commands.timehistory_run import limited

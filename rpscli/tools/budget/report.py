@@ -1,5 +1,5 @@
-"""What moves the results of one history: inputs changed one at a
-time, and what comes of each.
+"""Causes that move the results of one history: inputs changed one at a time, and what
+comes of each.
 """
 
 from __future__ import annotations

@@ -241,7 +241,7 @@ class DesignTask:
 
     @property
     def unknowns(self) -> tuple[Unknown, ...]:
-        """What may change."""
+        """Unknowns of the design: keys that may change, with their ranges."""
         return tuple(self.file.variables.values())
 
     @property
@@ -344,7 +344,9 @@ def parse_design(
 
 
 def _notes(file: DesignFile, base: dict[str, Any]) -> Iterator[str]:
-    """What the design takes from its base, or not, in another way than may be meant."""
+    """Remarks on what the design takes from its base, or not, in another way than may be
+    meant.
+    """
     if names := replaced_limits(base, file.limits):
         yield f"the limits of the design replace those of the base case: {names}"
     own = {"slenderness", "semi_diagonal", "dimensions"}

@@ -40,7 +40,7 @@ DIGITS = 4
 
 
 def requirement_label(requirement: Requirement) -> str:
-    """What is limited, and at which intensity."""
+    """Name of what is limited, with the intensity at which it is."""
     words = requirement.condition.name
     if requirement.level is None:
         return words
@@ -192,9 +192,7 @@ def _interval(interval: Iterable[float]) -> str:
 
 
 def answer_notes(answer: Answer, faults: Iterable[str]) -> Iterator[str]:
-    """What the user should know about the answer; `faults` are those
-    of designs without a case.
-    """
+    """Remarks on the answer; `faults` are those of designs without a case."""
     if invalid := int((~answer.valid).sum()):
         yield f"{invalid} designs are not valid cases and count as failing: {next(iter(faults))}"
     if not answer.resamples and answer.task.file.search.resamples:

@@ -139,7 +139,7 @@ def _tables(found: Identified) -> Iterator[Part]:
 
 
 def measured(source: str, test: str, first: float | None, last: float | None) -> Columns:
-    """What a test needs, in SI units, in the time that is looked at."""
+    """Columns that a test needs, in SI units, in the time that is looked at."""
     from rpscli.case.text.files import read_text
     from rpscli.titled_table import titled_table
     from rpscli.tools.identify.identification import TESTS

@@ -31,8 +31,8 @@ group, and their SI units."""
 def identified(
     structure: PodiumStructure, test: str, columns: Mapping[str, Array]
 ) -> Identified:
-    """What one of the `TESTS` says of a structure, from columns
-    (n,) in SI units by name.
+    """Properties of a structure that one of the `TESTS` shows, from columns (n,) in SI
+    units by name.
     """
     if test == "rocking":
         if (rotation := columns.get("rotation")) is None:

@@ -332,7 +332,7 @@ def _told(
 
 
 def _remarks(of: _Release, q: Array, misfit: float, *, ensembles: bool) -> str:
-    """What a reader of the values has to know."""
+    """Remarks that a reader of the values has to know."""
     remarks = f"residuals are {misfit:.3g} times what noise alone would leave"
     if misfit > LACKING:
         remarks += (
@@ -362,8 +362,8 @@ def _remarks(of: _Release, q: Array, misfit: float, *, ensembles: bool) -> str:
 def _refuse_bad_fit(
     of: _Release, q: Array, bounds: Array, model: Array, misfit: float
 ) -> None:
-    """What least squares end at is no answer if the model does not
-    rock like the structure.
+    """Refuse the end of least squares as an answer if the model does not rock like the
+    structure.
     """
     away = f"{misfit:.3g} times the noise from those measured"
     missed = model - of.measured.reshape(-1, 2)

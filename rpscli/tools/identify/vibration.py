@@ -290,7 +290,7 @@ def vibration_of_case(
 def _with_contact(
     structure: PodiumStructure, ratio: Estimate, found: Identified
 ) -> Identified:
-    """What a ratio of periods says of the contact of the podium."""
+    """Contact of the podium by a ratio of periods, added to what was found."""
     estimates = dict(found.estimates)
     remarks = found.remarks
     if ratio.high < 1.0:

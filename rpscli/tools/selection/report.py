@@ -27,7 +27,7 @@ from rpscli.tools.selection.selection import Selection, misfit
 
 
 def selection_document(selection: Selection) -> dict[str, Any]:
-    """What was chosen, beside the target; SI units."""
+    """Motions that were chosen, beside the target; SI units."""
     names = ("source", "second", "factor", "clamped", "event", "pgv", "pgd", "misfit")
     columns = picked(selection_columns(selection), *names)
     target = selection.target
@@ -103,7 +103,7 @@ WHY_PGV = (
 
 
 def selection_doubts(selection: Selection, fixed: float | None) -> Iterator[str]:
-    """What a human should look at; `fixed` is T1 of the structure on a fixed base [s]."""
+    """Doubts for a human; `fixed` is T1 of the structure on a fixed base [s]."""
     asked = selection.requirements
     target = selection.target
     chosen = selection.chosen
@@ -151,7 +151,7 @@ def selection_doubts(selection: Selection, fixed: float | None) -> Iterator[str]
 def selection_tables(
     selection: Selection, why: str, left_out: Mapping[str, Mapping[str, int]]
 ) -> Iterator[Part]:
-    """What was chosen, how well it fits, and what the code asks."""
+    """Tables of the chosen motions, how well they fit, and what the code asks."""
     names = ("name", "event", "factor", "pgv", "pgd", "misfit", "clamped")
     yield Table(picked(selection_columns(selection), *names), words=2)
     target = selection.target

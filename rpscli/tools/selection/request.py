@@ -13,8 +13,8 @@ from rpscli.tools.selection.requirements import Periods
 
 @dataclass(frozen=True)
 class SelectionRequest:
-    """What is asked for: `count` motions, or pairs, whose spectra are
-    compared in `periods` [s].
+    """A request for `count` motions, or pairs, whose spectra are compared in `periods`
+    [s].
 
     `factors` bound those on a motion, `per_event` the motions from one earthquake. A
     `pgv` [m/s] is that of every motion, in place of the factor that fits it best. `rules`
