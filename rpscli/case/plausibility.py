@@ -18,6 +18,7 @@ from rpscli.case.build import each_storey
 from rpscli.case.schema.case_file import SuperstructureSection
 from rpscli.errors import listed
 from rpscli.model.statics import storey_strengths
+from rpscli.model.twisting import unstable_from
 
 if TYPE_CHECKING:
     from rpscli.model.contact import Bed
@@ -88,6 +89,7 @@ def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
     """Sizes, masses, period, restitution, friction, pressure; storey shears at uplift."""
     yield from _unusual_sizes(structure)
     yield from _pressed_arcs(structure)
+    yield from _turning_slab(structure)
     bearing = structure.bearing
     building = structure.superstructure
     if (
@@ -203,6 +205,21 @@ def _pressed_arcs(structure: PodiumStructure) -> Iterator[Doubt]:
             float(pressure / strength),
             f" ({1e-6 * pressure:.4g} MPa over {1e-6 * strength:.4g} MPa)",
         )
+
+
+def _turning_slab(structure: PodiumStructure) -> Iterator[Doubt]:
+    """A slab that may turn about the vertical, which no history computes."""
+    ratio = unstable_from(structure)
+    if ratio is None:
+        return
+    yield Doubt(
+        "podium.plan: that the slab may turn about the vertical is not computed; turns"
+        " grow once it moves {0} of its critical displacement, so that columns at corners"
+        " may move 1.1 to 1.5 times as far as the figure given (one motion in six: 1.5 to"
+        " 2), unless their ends resist pivoting with a lever of some 20 mm of the weight,"
+        " or dampers of 0.1 W per m/s in all stand at the corners",
+        ratio,
+    )
 
 
 def _weak_storeys(structure: PodiumStructure) -> Iterator[Doubt]:
