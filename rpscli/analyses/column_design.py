@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.trace import Trace
-from rpscli.model.column import ColumnDesign, ColumnState
+from rpscli.model.column import ArcContact, ColumnDesign, ColumnState
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics import state
 from rpscli.physics.laws.geometry import path_along
@@ -45,6 +45,7 @@ class ColumnInstant:
     contact_pressure: float | None  # p_0 on an arc [Pa]; None elsewhere
     crushed_depth: float | None  # b_c at an edge [m]; None elsewhere
     doubt: str  # why the pressure is another one; empty where its law is valid
+    contact: ArcContact | None  # on an arc; None elsewhere
 
 
 @dataclass(frozen=True)
@@ -65,15 +66,19 @@ class ColumnDemand:
 
 def corner_of(structure: PodiumStructure, *, both: bool) -> float:
     """Ratio by which a column bears farther from its axis on a corner than on its
-    inscribed circle: sqrt(2) of square ones that tilt to any side.
+    inscribed circle: sqrt(2) of square ends that tilt to any side.
     """
-    square = structure.column is not None and structure.column.section == "square"
-    return math.sqrt(2.0) if both and square else 1.0
+    return math.sqrt(2.0) if both and _corners(structure) else 1.0
+
+
+def _corners(structure: PodiumStructure) -> bool:
+    design = structure.column
+    return design is not None and design.stands_on_corners(structure.bearing)
 
 
 def no_line(structure: PodiumStructure, *, both: bool) -> str:
     """The reason why neither pressure nor edge is known; empty if they are."""
-    if both and structure.column is not None and structure.column.section == "square":
+    if both and _corners(structure):
         return (
             "a square column that tilts to any side stands on a corner, not along a line"
         )
@@ -163,6 +168,7 @@ class _Ends:
             float(design.pressed(b, x, N)[0]) if self.rolls[i] else None,
             design.crushed(b, force)[0] if self.edges[i] else None,
             design.doubt(b, float(x), force) if self.rolls[i] else "",
+            design.contact(b, float(x)) if self.rolls[i] else None,
         )
 
     def pressures(self) -> Array:

@@ -50,7 +50,10 @@ STEEL = 100e9
 """Columns of a larger modulus have ends of steel [Pa]."""
 
 STEEL_ROTATION = 0.05
-"""Of rollers and rockers of EN 1337-4 [rad]."""
+"""Of rollers of EN 1337-4 and of rockers of EN 1337-6 [rad]."""
+
+STEEL_CODE = {True: "EN 1337-4", False: "EN 1337-6"}
+"""That gives the strength of steel on steel, on lines and in points."""
 
 RESTING = (state.FULL_CONTACT, state.STUCK, state.BEDDED)
 """Phases in which the podium is down, or held."""
@@ -517,8 +520,9 @@ class TimeHistoryResult(Demand):
             yield (
                 f"the largest rotation of {_beside(self.max_rotation, STEEL_ROTATION)}"
                 " rad is beyond"
-                f" {STEEL_ROTATION:g} rad, up to which EN 1337-4 gives the strength of"
-                " steel on steel"
+                f" {STEEL_ROTATION:g} rad, up to which"
+                f" {STEEL_CODE[design.bears_on_line(self.structure.bearing)]} gives the"
+                " strength of steel on steel"
             )
 
     def _near_the_limit(self) -> Iterator[str]:

@@ -48,7 +48,7 @@ DEVICE_KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
 
 def bearing_of(section: BearingSection) -> Bearing:
     """The column, from ratios or sizes; flat ends may leave out their wedge."""
-    kept = {"inertia_ratio", "inertia_ratio_axial"}
+    kept = {"inertia_ratio", "inertia_ratio_axial", "ends"}
     given = section.model_dump(include=kept, exclude_none=True)
     if (sizes := section.dimensions) is not None:
         h = sizes.height

@@ -88,6 +88,7 @@ LARGEST_DRIFT = 0.02
 def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
     """Sizes, masses, period, restitution, friction, pressure; storey shears at uplift."""
     yield from _unusual_sizes(structure)
+    yield from _unsaid_ends(structure)
     yield from _pressed_arcs(structure)
     yield from _turning_slab(structure)
     bearing = structure.bearing
@@ -190,6 +191,22 @@ def _unusual_sizes(structure: PodiumStructure) -> Iterator[Doubt]:
             )
 
 
+def _unsaid_ends(structure: PodiumStructure) -> Iterator[Doubt]:
+    """Square columns without a flat part: nothing says how their ends are curved."""
+    bearing = structure.bearing
+    column = structure.column
+    if column is None or column.section != "square":
+        return
+    if bearing.ends is None and bearing.is_spherical:
+        yield Doubt(
+            "podium.bearing.ends is missing: the ends of square columns without a flat"
+            " part are taken as spherical, which touch in a point and have the larger"
+            " pressure; write ends: spherical, or ends: cylindrical for ends that are"
+            " curved along the motion only and bear on a line of podium.column."
+            "edge_length"
+        )
+
+
 def _pressed_arcs(structure: PodiumStructure) -> Iterator[Doubt]:
     """Columns whose arcs bear more than they can before anything moves."""
     bearing = structure.bearing
@@ -253,7 +270,8 @@ def doubts_of_directions(structure: PodiumStructure, *, both: bool) -> Iterator[
             " and to stay in place, which torsion under their weight hardly ensures:"
             " they may roll away"
         )
-    if structure.column is not None and structure.column.section == "square":
+    column = structure.column
+    if column is not None and column.stands_on_corners(structure.bearing):
         yield Doubt(
             "podium.column.section: square columns are modelled as round under both"
             " components, on their inscribed circle; towards corners real ones bring up"

@@ -63,6 +63,7 @@ OF_THE_MODEL = {
         name: f"{BEARING}.{name}"
         for name in ("slenderness", "wedge_slenderness", "curvature_ratio")
     },
+    "ends": f"{BEARING}.ends",
     "restitution": "podium.impact",
     "law": "podium.impact.restitution",
     "devices": "podium.devices",
@@ -80,7 +81,8 @@ def refused_by_model(error: ValueError, document: Document) -> Fault:
     """Fault for a refusal by the model, at the key that it is about."""
     text = str(error)
     key = OF_THE_MODEL.get(text.split(maxsplit=1)[0].strip(":,"), "podium")
-    if document.has(path_of(DIMENSIONS)) and key.startswith(BEARING):
+    said = key == f"{BEARING}.ends"  # beside ratios and dimensions
+    if document.has(path_of(DIMENSIONS)) and key.startswith(BEARING) and not said:
         key = DIMENSIONS
     parent, _, last = key.rpartition(".")
     named = text.startswith((f"{last} ", f"{last}:"))

@@ -23,6 +23,7 @@ from rpscli.report.derived import (
     UPWARDS,
     Derived,
     derived_quantities,
+    label_of,
     strength_tables,
     strengths_by_way,
 )
@@ -189,11 +190,13 @@ def _quantity_rows(
     for row in quantities:
         if row.name not in document or row.name.endswith("_paper"):
             continue
+        if not (label := label_of(row, document)):
+            continue
         of_some = row in (*CONTACT, *COLUMN, *BOTH) or row.name == "rolling_period"
         if document[row.name] is None and of_some:
             continue  # columns with a flat part, edges, or curved ends have none
         value, unit = large(document[row.name], row.unit)
-        yield row.label, row.symbol, shown(value), unit
+        yield label, row.symbol, shown(value), unit
 
 
 def _stiffness_rows(
@@ -230,6 +233,9 @@ def device_tables(
     """
     if not structure.devices:
         return
+    begins = "uplift force at the cap beam", "uplift acceleration, quasi-static"
+    if structure.bearing.is_spherical:
+        begins = "force at the cap beam that moves it", "acceleration that moves it"
     force = document["uplift_force_with_devices"]
     acceleration = document["uplift_acceleration_with_devices"]
     found = [
@@ -238,8 +244,8 @@ def device_tables(
             for index, device in enumerate(structure.devices)
             for item in device.consequences(structure)
         ),
-        ("all", "uplift force at the cap beam", force, "N"),
-        ("all", "uplift acceleration, quasi-static", acceleration, "m/s2"),
+        ("all", begins[0], force, "N"),
+        ("all", begins[1], acceleration, "m/s2"),
     ]
     rows = []
     for device, label, value, unit in found:

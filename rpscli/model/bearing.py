@@ -8,13 +8,15 @@ import cmath
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Literal, NamedTuple, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.errors import is_size, require_fields
 from rpscli.physics.laws import geometry
+
+Ends: TypeAlias = Literal["spherical", "cylindrical"]
 
 
 def first_order_critical_curvature_ratio(
@@ -53,6 +55,11 @@ class Bearing:
         I_3/(m_c R^2), I_3 about the axis of the column, which takes part where
         both horizontal components act; left out: (B'/R)^2/2, a solid round
         column of half-width B'.
+    ends
+        `spherical` ends are bodies of revolution about the axis of the column, which
+        touch in a point; `cylindrical` ones are curved along the motion only, touch
+        along a line and cannot roll across it. None: as the width of the flat part and
+        the section of the column say. Flat ends have none.
 
     Raises
     ------
@@ -78,6 +85,7 @@ class Bearing:
     curvature_ratio: float
     inertia_ratio: float = 4.0 / 3.0
     inertia_ratio_axial: float = None  # type: ignore[assignment]  # completed below
+    ends: str | None = None  # one of `Ends`
 
     def __post_init__(self) -> None:
         """Refuse a shape that cannot be built."""
@@ -100,6 +108,7 @@ class Bearing:
                 " 0: without a flat part an arc whose radius is not above half the"
                 " height does not hold the column upright"
             )
+        self._refuse_ends()
         if not self.is_flat and self.slenderness > self.wedge_slenderness:
             raise ValueError(
                 f"wedge_slenderness = {self.wedge_slenderness:g} must be >= slenderness ="
@@ -120,6 +129,16 @@ class Bearing:
         elif axial <= 0.0:
             raise ValueError(f"inertia_ratio_axial = {axial} must be > 0")
 
+    def _refuse_ends(self) -> None:
+        """Refuse shapes that are unknown, and those of ends that are not curved."""
+        if self.ends not in (None, *get_args(Ends)):
+            raise ValueError(f"ends = {self.ends} must be spherical, cylindrical or None")
+        if self.ends is not None and self.is_flat:
+            raise ValueError(
+                f"ends = {self.ends} has no meaning for flat ends, which are not curved:"
+                " give them arcs, or remove ends"
+            )
+
     @property
     def is_flat(self) -> bool:
         """True of flat ends: the column rocks from the start and never rolls."""
@@ -131,6 +150,13 @@ class Bearing:
         from rest, without impacts.
         """
         return self.slenderness == 0.0
+
+    @property
+    def is_of_revolution(self) -> bool:
+        """True of ends that touch in a point whatever the section of the column: those
+        said to be spherical, and those without a flat part of which nothing is said.
+        """
+        return self.ends == "spherical" or (self.ends is None and self.is_spherical)
 
     @property
     def alpha(self) -> float:

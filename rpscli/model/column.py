@@ -73,26 +73,42 @@ class ColumnState(NamedTuple):
 
 
 @dataclass(frozen=True)
+class ArcContact:
+    """Where an arc touches a plate: along a line, or in a point."""
+
+    kind: Literal["line", "point"]
+    radius: float  # along the tilt [m]
+    radius_across: float | None = None  # of a point [m]
+    length: float | None = None  # of a line [m]
+
+    def __str__(self) -> str:
+        """The kind and its sizes.
+
+        >>> str(ArcContact("line", 1.5, length=0.7)), str(ArcContact("point", 2.0, 2.0))
+        ('line of 0.7 m, r = 1.5 m', 'point, r = 2 m')
+        """
+        if self.length is not None:
+            return f"line of {self.length:.4g} m, r = {self.radius:.4g} m"
+        if self.radius_across in (None, self.radius):
+            return f"{self.kind}, r = {self.radius:.4g} m"
+        return f"point, r = {self.radius:.4g} m, across {self.radius_across:.4g} m"
+
+
+@dataclass(frozen=True)
 class ColumnDesign:
     """Cross-section and material of a column, and of the plate it stands on."""
 
-    section: Literal[
-        "square", "round"
-    ]  # square columns bear on lines, round ones on points
+    section: Literal["square", "round"]
     modulus: float  # E of the column [Pa]
     poisson: float  # nu of the column
     contact_strength: float  # f: pressure that column or plate can bear [Pa]
-    edge_length: float | None = None  # L of the line of square columns [m]
+    edge_length: float | None = None  # L of the line on which an end bears [m]
     plate_modulus: float | None = None  # of the plate; None: that of the column
     plate_poisson: float | None = None
 
     def __post_init__(self) -> None:
-        """Refuse a line without a length, and what cannot be a material."""
+        """Refuse what cannot be a length or a material."""
         require_fields(self)
-        if (self.section == "square") != (self.edge_length is not None):
-            raise ValueError(
-                "edge_length belongs to square columns, all of them, as in 0.45 m"
-            )
         sizes = self.modulus, self.contact_strength, self.edge_length, self.plate_modulus
         if not all(0.0 < size < math.inf for size in sizes if size is not None):
             raise ValueError(
@@ -100,6 +116,51 @@ class ColumnDesign:
             )
         if not all(0.0 <= nu <= 0.5 for nu in (self.poisson, self.plate_poisson or 0.0)):
             raise ValueError("poisson must be from 0 to 0.5")
+
+    def bears_on_line(self, bearing: Bearing) -> bool:
+        """True where its ends touch plates along a line, and not in a point.
+
+        Where nothing is said of the ends, those of round columns are bodies of
+        revolution, as are those without a flat part, of which a point is the safe side;
+        other square columns are curved, or have an edge, along each of their sides.
+        """
+        if bearing.ends is not None:
+            return bearing.ends == "cylindrical"
+        return self.section == "square" and not bearing.is_of_revolution
+
+    def line(self, bearing: Bearing) -> float | None:
+        """L of the line on which an end bears [m]; None where it touches in a point."""
+        return self.edge_length if self.bears_on_line(bearing) else None
+
+    def stands_on_corners(self, bearing: Bearing) -> bool:
+        """True of square ends that have a line along each side, and none on a corner."""
+        return bearing.ends is None and self.bears_on_line(bearing)
+
+    def refuse_line(self, bearing: Bearing) -> None:
+        """Refuse a line without a length, and a length without a line."""
+        line = self.bears_on_line(bearing)
+        # A square column without a flat part may have one, from before ends had a shape.
+        unsaid = self.section == "square" and bearing.ends is None
+        if line and self.edge_length is None:
+            raise ValueError(
+                "edge_length belongs to square columns and cylindrical ends, all of"
+                " them, as in 0.45 m: L of the line on which an end bears"
+            )
+        if self.edge_length is not None and not (line or unsaid):
+            ends = "spherical ends" if bearing.ends else "ends of round columns"
+            raise ValueError(
+                "edge_length belongs to square columns and cylindrical ends (podium."
+                f"bearing.ends): {ends} touch in a point; remove it"
+            )
+
+    def contact(self, bearing: Bearing, rotation: float) -> ArcContact:
+        """Contact of an arc at a tilt [rad], which is above 0 beside a flat part."""
+        r = bearing.radius
+        if self.bears_on_line(bearing):
+            return ArcContact("line", r, length=self.edge_length)
+        width = bearing.half_width
+        across = r + width / math.sin(rotation) if width else r
+        return ArcContact("point", r, radius_across=across)
 
     @property
     def contact_modulus(self) -> float:
@@ -118,7 +179,7 @@ class ColumnDesign:
         r = bearing.radius
         E = self.contact_modulus
         N = np.maximum(force, 0.0)
-        if (L := self.edge_length) is not None:  # (16.4)
+        if (L := self.line(bearing)) is not None:  # (16.4)
             half = np.sqrt(4.0 * N * r / (math.pi * L * E))
             return np.sqrt(N * E / (math.pi * L * r)), half, np.full_like(half, np.inf)
         from scipy.special import elliprd  # slow
@@ -143,7 +204,7 @@ class ColumnDesign:
         """The reason why the pressure is another one; empty where its law is valid."""
         _, along, across = self.pressed(bearing, np.array(rotation), np.array(force))
         r = bearing.radius
-        line = self.edge_length is not None
+        line = self.bears_on_line(bearing)
         if r * math.sin(rotation) <= along and not bearing.is_spherical:
             return "an upper bound, since the flat part still bears"
         if bearing.is_spherical:
@@ -159,8 +220,8 @@ class ColumnDesign:
         """
         area = max(force, 0.0) / self.contact_strength
         radius = bearing.end_half_width
-        if self.edge_length is not None:
-            return area / self.edge_length, 0.5 * area / self.edge_length
+        if (L := self.line(bearing)) is not None:
+            return area / L, 0.5 * area / L
         area /= radius**2
         if area >= math.pi:
             return 2.0 * radius * area / math.pi, radius

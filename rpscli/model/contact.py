@@ -322,7 +322,7 @@ def _refuse_combinations(structure: Standing) -> None:
     without = structure.superstructure is None
     curved = not b.is_flat
     reasons = {
-        "spherical ends have no flat part to bear on; use `rigid`": b.is_spherical,
+        "ends without a flat part have nothing to bear on; use `rigid`": b.is_spherical,
         "floors would jump at re-contact, use the impact law `flexible`": law.floors_jump,
         "a period_ratio is that of a building, without one give stiffness or"
         " settlement": (contact.period_ratio is not None and without),

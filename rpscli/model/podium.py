@@ -133,6 +133,8 @@ class PodiumStructure(Shown):
                 " equal ones as one, with the sum of their forces and stiffnesses"
             )
         self._refuse_impacts()
+        if self.column is not None:
+            self.column.refuse_line(self.bearing)
         object.__setattr__(self, "bed", bed_of(self))  # raises what it does not have
 
     def _refuse_impacts(self) -> None:
@@ -193,6 +195,11 @@ class PodiumStructure(Shown):
         """The reason why both horizontal components cannot act at
         once; empty if they can.
         """
+        if self.bearing.ends == "cylindrical":
+            return (
+                "podium.bearing.ends: cylindrical ends roll along one direction and"
+                " cannot roll across it; give one component, or make the ends spherical"
+            )
         jumps = self.impact_law.floors_jump and self.superstructure is not None
         if jumps and not self.passes_smoothly:
             return (

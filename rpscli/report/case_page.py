@@ -24,6 +24,7 @@ from rpscli.model.superstructure import Superstructure
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.records.measures import DAMPING, drawn_spectrum, intensity_measures
 from rpscli.report import derived, timehistory
+from rpscli.report.column_table import column_table
 from rpscli.report.figures import style
 from rpscli.report.figures.look import Look
 from rpscli.report.figures.motions import draw_spectra, record_figure
@@ -351,6 +352,17 @@ def response_section(
     return ReportSection(title, [*timehistory.demand_tables(result), *shown])
 
 
+STEEL_ON_STEEL = {
+    True: "Steel on steel by EN 1337-4 has 2.0 f_u on lines",
+    False: (
+        "Steel on steel in points has 2.3 f_u by N_Rk = 220 R^2 f_u^3/E_d^2 of EN 1337-6"
+        " (a formula that was not compared with the text of the code); 2.0 f_u, as on"
+        " lines, is on the safe side"
+    ),
+}
+"""What codes say of the strength, of lines and of points (Theory, section 16)."""
+
+
 def column_sections(
     result: TimeHistoryResult, files: Iterable[tuple[str, object]]
 ) -> Iterator[ReportSection]:
@@ -360,20 +372,21 @@ def column_sections(
     if result.column_demand is None:
         return
     drawn = pictures(files).get("column")
-    without = listed(timehistory.left_out_of_columns(result), "and")
+    left_out = timehistory.left_out_of_columns(result)
+    without = f", without {listed(left_out, 'and')}" if left_out else ""
+    design = result.structure.column
+    on_line = design is not None and design.bears_on_line(result.structure.bearing)
     codes = (
         "f is podium.column.contact_strength. By EN 1992-1-1, formula 6.63, concrete in"
         " a strip at the edge of a column has f_cd, since there is nothing outside it;"
-        " under an arc the line lies inside, and a wider plate has up to 3 f_cd. Steel"
-        " on steel by EN 1337-4 has 2.0 f_u on lines, for rotations up to"
-        f" {STEEL_ROTATION:g} rad."
+        " under an arc the contact lies inside, and a wider plate has up to 3 f_cd."
+        f" {STEEL_ON_STEEL[on_line]}, for rotations up to {STEEL_ROTATION:g} rad."
     )
     yield ReportSection("Forces and pressures of a column", [
         (
-            f"Maxima at instants of a dense trace under {result.record.name}, without"
-            f" {without}."
+            f"Maxima at instants of a dense trace under {result.record.name}{without}."
         ),
-        *timehistory.column_table(result),
+        *column_table(result),
         *([Picture(drawn, CAPTIONS["column"])] if drawn else []),
         "With numbers, in SI units (THEORY.md, section 16):",
         _derived(derived.column_derivations(result)),

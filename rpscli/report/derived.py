@@ -11,10 +11,11 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
+from dataclasses import asdict, replace
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from rpscli.model.column import ArcContact
 from rpscli.report.formulas import formulas, of_column
 from rpscli.report.table import Part, Table, shown
 
@@ -189,7 +190,7 @@ def _ends(structure: PodiumStructure, x: float, N: float) -> dict[str, float]:
     design = structure.column
     assert design is not None, "there is a column"
     found = {
-        "L": design.edge_length or math.nan, "E_c": design.contact_modulus,
+        "L": design.line(b) or math.nan, "E_c": design.contact_modulus,
         "strength": design.contact_strength, "wide": 2.0 * b.end_half_width,
     }  # fmt: skip
     found["crushed"] = design.crushed(b, N)[0] / found["wide"]
@@ -230,6 +231,33 @@ COLUMN = (
 )
 """Of `podium.column`."""
 
+NEVER_LIFTS = {
+    "restitution": "", "uplift_acceleration": "", "uplift_force": "", "static_base_shear": "",
+    "column_rest_moment": "", "initial_stiffness": "stiffness of rolling, at the cap beam",
+    "contact_rest_pressure": "pressure under its arcs upright",
+}  # fmt: skip
+"""Words of ends without a flat part, which roll from rest; empty for what they lack."""
+
+
+def label_of(row: Derived, found: Mapping[str, Any]) -> str:
+    """Words for a quantity beside all of them, which say how arcs touch; empty if a column
+    without a flat part has none.
+    """
+    label = row.label if found["flat_width"] else NEVER_LIFTS.get(row.name, row.label)
+    contact = found.get("contact_of_arcs")
+    if row.name == "contact_rest_pressure" and contact:
+        return f"{label}: {ArcContact(**contact)}"
+    return label
+
+
+def _contact_of_arcs(structure: PodiumStructure) -> dict[str, Any] | None:
+    """Contact of the arcs of a column at rest; None of flat ends."""
+    b = structure.bearing
+    design = structure.column
+    x = 0.1 * b.alpha
+    return asdict(design.contact(b, x)) if design and x < b.beta else None
+
+
 FIRST_PERIOD = Derived("T1", "first period on a fixed base", "T1", "s",
     lambda s: float(s.superstructure.periods[0]) if s.superstructure else None)  # fmt: skip
 
@@ -253,6 +281,7 @@ def derived_quantities(structure: PodiumStructure) -> dict[str, Any]:
         },
         "storeys": structure.storeys,
         **{row.name: row.value(structure) for row in (FIRST_PERIOD, *further)},
+        **({"contact_of_arcs": _contact_of_arcs(structure)} if structure.column else {}),
         **{name: getattr(building, name) if building else [] for name in lists},
     }
 
@@ -306,17 +335,20 @@ def derivations(
     expressions = formulas(structure, podium, crushed)
     further = (*CONTACT * bool(structure.bed), *COLUMN * bool(structure.column))
     exact = f"{structure.critical_rotation:.{DIGITS}g}"
+    contact = _contact_of_arcs(structure)
+    shape = {"flat_width": structure.bearing.half_width, "contact_of_arcs": contact}
     for quantity in (*GEOMETRY, *DYNAMICS, FIRST_PERIOD, *further):
         for row in (*BEFORE.get(quantity.name, ()), quantity):
             value = row.value(structure)
             formula = expressions.get(row.name, "")
-            if not isinstance(value, float | int):
+            label = label_of(row, shape)
+            if not isinstance(value, float | int) or not label:
                 continue
             if row.name == "critical_rotation_paper" and f"{value:.{DIGITS}g}" == exact:
                 continue
             texts = symbolic(formula), numeric(formula, letters)
             symbol = greek(row.symbol)
-            yield Derivation(row.name, row.label, symbol, float(value), row.unit, *texts)
+            yield Derivation(row.name, label, symbol, float(value), row.unit, *texts)
 
 
 class _Step(NamedTuple):
@@ -395,7 +427,8 @@ def _end_steps(
     pressure = at.contact_pressure
     if at.largest == "contact_pressure_ratio" and pressure is not None:
         formula = of_column(structure, 0.0)["contact_rest_pressure"]
-        return [_Step("largest pressure on arcs", "p_0", pressure, "Pa", formula)]
+        words = f"largest pressure on arcs: {at.contact}"
+        return [_Step(words, "p_0", pressure, "Pa", formula)]
     if at.largest == "crushed_width_ratio":
         formula = of_column(structure, crushed)["crushed_rest_ratio"]
         return [_Step("largest crushed width", "b_c/2B'", crushed, "-", formula)]

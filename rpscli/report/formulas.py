@@ -137,9 +137,10 @@ def of_column(structure: PodiumStructure, crushed: float) -> dict[str, str]:
     """Of a column (Theory (16.2), (16.4) to (16.6)); a and b of an
     ellipse are those of (16.5).
 
-    A round end whose edge is `crushed` over its whole width bears everywhere.
+    An end of revolution whose edge is `crushed` over its whole width bears everywhere.
     """
-    square = structure.column is not None and structure.column.section == "square"
+    design = structure.column
+    on_line = design is not None and design.bears_on_line(structure.bearing)
     line = "sqrt(N_0 * E_c / (pi * L * radius))"
     ellipse = "3 * N_0 / (2 * pi * a_c * b_c)"
     segment = "N_0 / (strength * (wide / 2)^2) = p_c - sin(p_c) * cos(p_c)"
@@ -148,6 +149,6 @@ def of_column(structure: PodiumStructure, crushed: float) -> dict[str, str]:
     return {
         "column_rest_force": "g * (m_c + m_b + M) / N",
         "column_rest_moment": f"N_0 * (width / 2 * cos(x) + radius * {turned})",
-        "contact_rest_pressure": line if square else ellipse,
-        "crushed_rest_ratio": "N_0 / (strength * L * wide)" if square else segment,
+        "contact_rest_pressure": line if on_line else ellipse,
+        "crushed_rest_ratio": "N_0 / (strength * L * wide)" if on_line else segment,
     }

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, replace
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
 
-from rpscli.analyses.column_design import WITHOUT_IMPULSE, no_line
+from rpscli.analyses.column_design import WITHOUT_IMPULSE
 from rpscli.analyses.column_forces import AMPLE
 from rpscli.analyses.result_quantities import (
     EVERY,
@@ -21,8 +22,8 @@ from rpscli.analyses.result_quantities import (
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import OTHER_LOSS, Neighbour
-from rpscli.errors import listed
 from rpscli.model.podium import PodiumStructure
+from rpscli.report.column_table import column_table
 from rpscli.report.derived import UPPER
 from rpscli.report.limits import limits_table
 from rpscli.report.storey_demands import Array, fixed_base_demands, isolated_demands
@@ -190,15 +191,13 @@ def neighbours_texts(
     motion and the impact law.
     """
     motions = [each for each in found if each.factor != 1.0]
-    passes = result.both_components and not result.structure.passes_smoothly
     if motions:
         near = [each for each in motions if abs(each.factor - 1.0) < 0.0101]
         turned = [each for each in found if each.turned]
         beside = f"; turned by 1 deg {_reached(turned)}" if turned else ""
         yield (
             f"one history: with 1 % less or more motion {_reached(near)}; with up to 3 %"
-            f" {_reached(motions)}{beside}. Motions with"
-            f" {'passes' if passes else 'impacts'} are chaotic: judge by several records"
+            f" {_reached(motions)}{beside}{_chaotic(result)}: judge by several records"
         )
     elif result.outcome != "failed":
         yield (
@@ -213,6 +212,14 @@ def neighbours_texts(
             f"one impact law: with podium.impact.loss {OTHER_LOSS:g} (e = {instead})"
             f" {_reached([other])}"
         )
+
+
+def _chaotic(result: TimeHistoryResult) -> str:
+    """Why neighbours part; empty of ends that roll without impacts."""
+    if result.structure.bearing.is_spherical:
+        return ""
+    passes = result.both_components and not result.structure.passes_smoothly
+    return f". Motions with {'passes' if passes else 'impacts'} are chaotic"
 
 
 def _reached(found: Sequence[Neighbour]) -> str:
@@ -270,7 +277,9 @@ def _of_storey(result: TimeHistoryResult) -> Iterator[Row]:
 def _of_building(result: TimeHistoryResult) -> Iterator[Row]:
     if (fixed := result.fixed_base) is None:
         return
-    ratio = f"{shown(result.base_shear_ratio)} V_st"
+    ratio = ""
+    if not result.structure.bearing.is_spherical:  # which has no V_st
+        ratio = f"{shown(result.base_shear_ratio)} V_st"
     yield from _rows(result, "max_base_shear", normalised=ratio, fixed=fixed.base_shear)
     if result.both_components:
         yield "  in x, in y", _ways(result, "max_base_shear"), "", ""
@@ -327,7 +336,8 @@ def _of_contacts(result: TimeHistoryResult) -> Iterator[Row]:
         (f"  {text}", "", "", "")
         for text in without_passes(structure, result.both_components)
     )
-    if structure.upwards and result.axial is not None and result.axial.sliding_time > 0.0:
+    lifts = structure.upwards and not structure.bearing.is_spherical
+    if lifts and result.axial is not None and result.axial.sliding_time > 0.0:
         time = f"{shown(1e3 * result.axial.sliding_time)} ms"
         yield f"  above {AMPLE:g} tan(alpha) for", time, "", ""
     yield from _forces_of_columns(result)
@@ -353,7 +363,8 @@ def _forces_of_columns(result: TimeHistoryResult) -> Iterator[Row]:
 
 def left_out_of_columns(result: TimeHistoryResult) -> list[str]:
     """Parts that forces, and moments and pressures, of columns do not hold."""
-    impulse = [WITHOUT_IMPULSE] * (result.column_demand is not None)
+    hits = not result.structure.bearing.is_spherical
+    impulse = [WITHOUT_IMPULSE] * (result.column_demand is not None and hits)
     return [*result.left_out_of_columns, *impulse]
 
 
@@ -385,7 +396,9 @@ def _passes(result: TimeHistoryResult) -> Iterator[Row]:
     """Uplifts and impacts, or passes near upright: their number, the
     closest, and the shortest.
     """
-    if not result.both_components or result.passes is None:
+    if result.structure.bearing.is_spherical:
+        pass  # they roll from rest, without uplift and impacts
+    elif not result.both_components or result.passes is None:
         yield "uplifts, impacts", f"{result.uplifts}, {result.impacts}", "", ""
     else:
         yield "uplifts, passes", f"{result.uplifts}, {result.passes:.0f}", "", ""
@@ -401,6 +414,10 @@ ROUND = (
     "columns are taken as round: square ones, which would wobble over corners, are not"
     " followed"
 )
+OF_REVOLUTION = (
+    "ends are taken as bodies of revolution (spherical), up to a circular edge; ends that"
+    " are curved otherwise are not followed"
+)
 
 
 def passes_text(result: TimeHistoryResult) -> str | None:
@@ -414,15 +431,16 @@ def passes_text(result: TimeHistoryResult) -> str | None:
             " % less base shear; the impact's loss acts where columns come back within"
             f" the tilt at uplift, wider passes lose in the joints alone; {ROUND}"
         )
+    shape = OF_REVOLUTION if result.structure.bearing.is_of_revolution else ROUND
     if not result.passes:
-        return ROUND
+        return shape
     lost = result.passes_as_impacts or 0
     return (
         f"{result.passes:.0f} passes near upright, however wide; {lost:.0f} of them lose"
         " like an impact (l > 0.5); contact time"
         f" {1e3 * result.structure.impact_law.contact_time:g} ms assumed: it decides how"
         " the motion dies out, and moves medians of largest rotations by up to 9 %"
-        f" (0.5 to 4 ms); {accumulated(result)}{ROUND}"
+        f" (0.5 to 4 ms); {accumulated(result)}{shape}"
     )
 
 
@@ -436,58 +454,13 @@ def accumulated(result: TimeHistoryResult) -> str:
     )
 
 
-LARGEST = {
-    "column_moment": "moment", "max_column_force": "axial force",
-    "contact_pressure_ratio": "pressure on arcs", "crushed_width_ratio": "crushed edge",
-}  # fmt: skip
-"""Words for what is largest at worst instants."""
-
-
-def column_table(result: TimeHistoryResult) -> Iterator[Part]:
-    """Worst instants of the most loaded column, and where its pressure is another one."""
-    if (column := result.column_demand) is None:
-        return
-    heads = (
-        "largest",
-        "end",
-        "t s",
-        "rad",
-        "N kN",
-        "F kN",
-        "M/N m",
-        "M kN m",
-        "p_0 MPa",
-        "b_c mm",
-    )
-    rows = [
-        (
-            LARGEST[each.largest], each.end, shown(each.time, 5), shown(each.rotation),
-            *(shown(1e-3 * force) for force in (each.axial_force, each.shear)),
-            shown(each.eccentricity, 3), shown(1e-3 * each.moment),
-            shown(each.contact_pressure and 1e-6 * each.contact_pressure),
-            shown(each.crushed_depth and 1e3 * each.crushed_depth),
-        )
-        for each in column.instants
-    ]  # fmt: skip
-    yield Table.of_texts(heads, rows, words=2)
-    for doubt in dict.fromkeys(each.doubt for each in column.instants if each.doubt):
-        of = [LARGEST[each.largest] for each in column.instants if each.doubt == doubt]
-        yield f"p_0 at the largest {listed(of, 'and')}: {doubt}"
-    if corner := no_line(result.structure, both=result.both_components):
-        yield f"no pressure: {corner}"
-        yield (
-            "moments of tilted columns are about a corner, sqrt(2) times those of the"
-            " inscribed circle; the section resists them about its diagonal"
-        )
-
-
 ENERGIES = (
     ("damped", "damped", ""),
     ("damped vertically", "damped_vertical", "upwards"),
     ("in storeys that yield", "yielded", "yields"),
     ("in devices", "devices", "devices"),
     ("in the joints", "bed", "bed"),
-    ("lost at impacts", "impact", ""),
+    ("lost at impacts", "impact", "bearing.half_width"),
     ("still stored", "stored", ""),
     ("residual", "residual", ""),
 )
@@ -500,7 +473,7 @@ def _energy(result: TimeHistoryResult) -> Iterator[Row]:
     parts = {
         f"  {label}": float(getattr(energy, name))
         for label, name, needed in ENERGIES
-        if not needed or getattr(structure, needed)
+        if not needed or attrgetter(needed)(structure)
     }
     yield "energy input", measured(energy.input, "J"), "", ""
     for label, part in parts.items():

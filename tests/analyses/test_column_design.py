@@ -14,9 +14,11 @@ from paper_structures import (
     waves,
 )
 
+from rpscli.analyses.column_design import no_line
 from rpscli.analyses.column_forces import no_bound
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import denser_trace, time_history
+from rpscli.model.bearing import Bearing
 from rpscli.model.column import ColumnDesign
 from rpscli.model.impact import ImpactLaw
 from rpscli.records.ground_motion import MotionComponents
@@ -151,6 +153,49 @@ def test_upright_square_columns_carry_the_moment_of_their_shears():
     assert time_history(of, pair, AT_ONCE).column_moment == pytest.approx(
         of.bearing.half_height * 105e3 * 220.0 / 420.0, rel=1e-12
     )
+
+
+def ball(ends, design):
+    bearing = Bearing(1.5, 0.0, 0.3, 0.7, ends=ends)
+    return replace(podium(0, 0.15, 0.5), bearing=bearing, columns=4, column=design)
+
+
+BARE = replace(SQUARE, edge_length=None)
+
+
+@needs_compiled_kernels
+@pytest.mark.parametrize("both", [False, True])
+def test_spherical_ends_press_and_bend_alike_whatever_the_section(both):
+    """Under one component and under both, on no corner; unsaid, the section tells nothing."""
+    push = waves(4.0, 0.01, 1.0, seed=1)
+    motion = MotionComponents(push.scaled(0.6), y=push.scaled(0.8)) if both else push
+    cases = (None, ROUND), ("spherical", ROUND), ("spherical", BARE), (None, SQUARE)
+    found = [time_history(ball(*each), motion, AT_ONCE) for each in cases]
+    names = "column_moment", "contact_pressure_ratio", "max_rotation"
+    wanted = [getattr(found[0], name) for name in names]
+    assert min(map(known, wanted)) > 0.0
+    for result in found[1:]:
+        assert [getattr(result, name) for name in names] == wanted
+        assert known(result.column_demand).corner == 1.0
+    kinds = {str(each.contact) for each in known(found[2].column_demand).instants}
+    assert kinds == {"point, r = 2.1 m"}
+    assert not no_line(ball(None, SQUARE), both=True)
+
+
+@needs_compiled_kernels
+def test_cylindrical_ends_press_on_a_line_and_roll_in_one_direction():
+    push = waves(4.0, 0.01, 1.0, seed=1)
+    of = ball("cylindrical", SQUARE)
+    line, point = (time_history(each, push, AT_ONCE) for each in (of, ball(None, SQUARE)))
+    assert line.max_rotation == point.max_rotation
+    assert line.column_moment == point.column_moment
+    at = known(line.column_demand).instants[-1]
+    by_hand = at.axial_force * SQUARE.contact_modulus / (math.pi * 0.45 * 2.1)
+    assert at.contact_pressure == pytest.approx(math.sqrt(by_hand), rel=1e-12)
+    assert known(line.contact_pressure_ratio) < known(point.contact_pressure_ratio)
+    assert str(at.contact) == "line of 0.45 m, r = 2.1 m"
+    with pytest.raises(ValueError, match="roll along one direction"):
+        time_history(of, MotionComponents(push, y=push), AT_ONCE)
 
 
 @needs_compiled_kernels

@@ -251,6 +251,7 @@ def test_a_section_under_the_wrong_parent():
 
 RHO, WEDGE = "podium.bearing.curvature_ratio={}", "podium.bearing.wedge_slenderness={}"
 TAN = "podium.bearing.slenderness={}"
+ENDS = "podium.bearing.ends={}"
 SPHERE = (TAN.format(0), RHO.format(0.7))
 ON_PLANE, ON_EDGES = (*FLAT, PLANE), (*FLAT, EDGES)
 PLAIN_FRAME = (
@@ -311,6 +312,11 @@ TENDON = "[{kind: tendon, prestress: 1 kN, stiffness: 1 kN/mm}]"
         ((ROUND,), "podium.columns is missing: podium.column asks for the force of one"),
         ((ROUND, "podium.columns=4", "podium.column.edge_length=1 m"), "belongs to square columns"),
         ((ROUND, "podium.columns=4", "podium.column.section=square"), "column.edge_length belongs"),
+        ((ROUND, "podium.columns=4", ENDS.format("cylindrical")), "column.edge_length belongs"),
+        ((ROUND, "podium.columns=4", "podium.column.edge_length=1 m", ENDS.format("spherical")),
+         "spherical ends touch in a point; remove it"),
+        ((*FLAT, ENDS.format("spherical")), "bearing.ends = spherical has no meaning for flat"),
+        ((ENDS.format("round"),), "spherical or cylindrical"),
         ((*FLAT, TAN.format(1.2), "podium.superstructure_mass_ratio=50"), "(law flexible) must be"),
         ((ROUND, "podium.column.modulus=35 kN"), "is a force, but must be a pressure"),
         ((ROUND, "podium.column.on.poisson=0.6"), "poisson = 0.6 must be >= 0 and <= 0.5 (nu)"),

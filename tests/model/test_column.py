@@ -5,9 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from paper_structures import known
+from scipy.integrate import quad
 
 from rpscli.model.bearing import Bearing
 from rpscli.model.column import ColumnDesign, ColumnState
+from rpscli.model.podium import PodiumStructure
 
 STATES = [
     # side, x, x', F and N below, F and N above; P, Q, M at every half of H
@@ -124,5 +127,128 @@ def test_where_the_laws_of_pressure_end():
         d.pressed(curved, np.array(0.1), np.array(5e5))[0] for d in (on_steel, SQUARE)
     ]
     assert pair[0] > pair[1]
-    with pytest.raises(ValueError, match="edge_length"):
-        replace(SQUARE, section="round")
+
+
+def podium_on(bearing, design):
+    return PodiumStructure(bearing, 4e4, 4e5, column=design)
+
+
+BALL = Bearing(1.5, 0.0, 0.3, 0.7)
+ARCS = Bearing(1.5, 0.15, 0.3, 0.5)
+FLAT = Bearing(1.5, 0.15, 0.15, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("design", "bearing", "ends", "kind"),
+    [
+        (SQUARE, ARCS, None, "line"),
+        (ROUND, ARCS, None, "point"),
+        (ROUND, BALL, None, "point"),
+        (SQUARE, BALL, None, "point"),  # nothing says which: the larger pressure
+        (replace(SQUARE, edge_length=None), BALL, None, "point"),
+        (replace(SQUARE, edge_length=None), BALL, "spherical", "point"),
+        (replace(SQUARE, edge_length=None), ARCS, "spherical", "point"),
+        (SQUARE, BALL, "cylindrical", "line"),
+        (SQUARE, ARCS, "cylindrical", "line"),
+        (replace(ROUND, edge_length=0.3), BALL, "cylindrical", "line"),
+    ],
+)
+def test_what_ends_touch_is_a_line_or_a_point(design, bearing, ends, kind):
+    """Pressure, edge and their words follow one rule; corners are those of unsaid squares."""
+    bearing = replace(bearing, ends=ends)
+    structure = podium_on(bearing, design)
+    found = design.contact(bearing, 0.1)
+    x, N = np.array(0.1), np.array(5e5)
+    assert (found.kind, design.line(bearing)) == (kind, found.length)
+    across = design.pressed(bearing, x, N)[2]
+    assert (across == math.inf) == (kind == "line")
+    depth, shorter = design.crushed(bearing, 5e5)
+    assert (shorter == 0.5 * depth) == (kind == "line")
+    assert design.stands_on_corners(bearing) == (ends is None and kind == "line")
+    assert bool(structure.planar_only) == (ends == "cylindrical")
+
+
+@pytest.mark.parametrize(
+    ("design", "bearing", "ends", "reason"),
+    [
+        (ROUND, ARCS, "cylindrical", "L of the line on which an end bears"),
+        (replace(SQUARE, edge_length=None), ARCS, None, "belongs to square columns"),
+        (replace(ROUND, edge_length=0.3), ARCS, None, "round columns touch in a point"),
+        (SQUARE, BALL, "spherical", "spherical ends touch in a point"),
+        (SQUARE, FLAT, "spherical", "no meaning for flat ends"),
+        (SQUARE, FLAT, "oval", "ends = oval must be spherical, cylindrical or None"),
+    ],
+)
+def test_ends_and_lines_that_contradict_each_other(design, bearing, ends, reason):
+    with pytest.raises(ValueError, match=reason):
+        podium_on(replace(bearing, ends=ends), design)
+
+
+def sunk(p_0, a, b, x, y):
+    """By how much a half-space of E* = 1 sinks at (x, y) under a semi-ellipsoid of pressure:
+    its integral over the distance, along rays from that point.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(60)
+    t, of_t = 0.5 * (nodes + 1.0), 0.5 * weights
+    angles = 2.0 * math.pi * np.arange(400) / 400
+    total = 0.0
+    for cosine, sine in zip(np.cos(angles), np.sin(angles), strict=True):
+        A = (cosine / a) ** 2 + (sine / b) ** 2
+        B = x * cosine / a**2 + y * sine / b**2
+        C = 1.0 - (x / a) ** 2 - (y / b) ** 2
+        end = (math.sqrt(B * B + A * C) - B) / A
+        s = end * (1.0 - t * t)  # the root at the end becomes a polynomial in t
+        root = np.sqrt(np.maximum(C - 2.0 * B * s - A * s * s, 0.0))
+        total += float(of_t @ (root * 2.0 * end * t))
+    return p_0 * total * (2.0 * math.pi / 400) / math.pi
+
+
+@pytest.mark.evidence("forces in columns, friction", "exact")
+@pytest.mark.parametrize("width", [0.0, 0.15])
+def test_pressure_in_a_point_carries_the_force_and_fits_the_surfaces(width):
+    """Hertz from the other side: p_0 on its ellipse is in balance with N, and presses into
+    both bodies the shape of the gap, (x^2/R_2 + y^2/R_1)/2.
+    """
+    bearing = replace(arcs(1.483, width), ends="spherical")
+    design, tilt, N = replace(SQUARE, edge_length=None), 0.1, 525e3
+    p_0, a, b = map(float, design.pressed(bearing, np.array(tilt), np.array(N)))
+    rho = np.linspace(0.0, 1.0, 20001)
+    carried = 2.0 * math.pi * a * b * p_0 * np.trapezoid(rho * np.sqrt(1.0 - rho**2), rho)
+    assert carried == pytest.approx(N, rel=1e-5)  # of the sum, whose end has no slope
+    found = design.contact(bearing, tilt)
+    E = design.contact_modulus
+    middle = sunk(p_0, a, b, 0.0, 0.0)
+    along = (middle - sunk(p_0, a, b, 0.6 * a, 0.0)) / E
+    across = (middle - sunk(p_0, a, b, 0.0, 0.6 * b)) / E
+    assert along == pytest.approx((0.6 * a) ** 2 / (2.0 * found.radius), rel=1e-9)
+    assert across == pytest.approx(
+        (0.6 * b) ** 2 / (2.0 * known(found.radius_across)), rel=1e-9
+    )
+
+
+@pytest.mark.evidence("forces in columns, friction", "exact")
+def test_pressure_on_a_line_carries_the_force_and_fits_the_surfaces():
+    """A cylinder: the slope that p_0 presses into both bodies is x/r, its sum N/L."""
+    bearing = replace(BALL, ends="cylindrical")
+    p_0, b, _ = map(float, SQUARE.pressed(bearing, np.array(0.1), np.array(525e3)))
+
+    def pressure(s):
+        return p_0 * math.sqrt(max(1.0 - (s / b) ** 2, 0.0))
+
+    assert quad(pressure, -b, b)[0] == pytest.approx(525e3 / 0.45, rel=1e-9)
+    x = 0.6 * b
+    principal = quad(pressure, -b, b, weight="cauchy", wvar=x)[0]
+    slope = -2.0 * principal / (math.pi * SQUARE.contact_modulus)
+    assert slope == pytest.approx(x / bearing.radius, rel=1e-7)
+
+
+def test_strengths_of_codes_as_pressures():
+    """Theory, section 16: 23 R f_u^2/E_d a length is 2.0 f_u, 220 R^2 f_u^3/E_d^2 2.3 f_u."""
+    E, f_u, r = 210e9, 470e6, BALL.radius
+    steel = ColumnDesign("square", E, 0.3, 2.0 * f_u, edge_length=0.7)
+    line = replace(BALL, ends="cylindrical")
+    at = np.array(0.1)
+    on_line = steel.pressed(line, at, np.array(23.0 * r * f_u**2 / E * 0.7))[0]
+    in_point = steel.pressed(BALL, at, np.array(220.0 * r**2 * f_u**3 / E**2))[0]
+    assert float(on_line / f_u) == pytest.approx(2.006, abs=5e-4)
+    assert float(in_point / f_u) == pytest.approx(2.342, abs=5e-4)

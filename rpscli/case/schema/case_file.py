@@ -24,6 +24,7 @@ from rpscli.case.schema.fields import (
 from rpscli.case.schema.limits import LimitsSection
 from rpscli.case.schema.scale_to import ScaleToSection
 from rpscli.constants import MOST_STOREYS, STANDARD_GRAVITY
+from rpscli.model.bearing import Ends
 from rpscli.model.devices import DAMPERS
 from rpscli.model.impact import CONTACT_TIME, IMPACT_LAWS, LONGEST_CONTACT
 from rpscli.records.quantities import KNOWN_UNITS, canonical_unit
@@ -157,7 +158,7 @@ class DimensionsSection(Section):
     height: Length
     """2H, between the flat parts of the two ends"""
     width: Annotated[float, Quantity("m", at_least=0)]
-    """2B, of the flat part; 0 = spherical ends, which roll from rest"""
+    """2B, of the flat part; 0 = spherical or cylindrical ends, which roll from rest"""
     wedge_width: Length | None = None
     """2B', across the outer edges of the arcs; ignored for flat ends"""
     radius: Annotated[
@@ -176,7 +177,7 @@ class BearingSection(Section):
         float | None,
         Quantity(at_least=0, remedy="it is B/H, as 0.15, or 0 for spherical ends"),
     ] = None
-    """tan(alpha) = B/H; 0 = spherical ends, which roll from rest"""
+    """tan(alpha) = B/H; 0 = spherical or cylindrical ends, which roll from rest"""
     wedge_slenderness: PositiveRatio | None = None
     """tan(alpha') = B'/H; ignored for flat ends"""
     curvature_ratio: Annotated[
@@ -206,6 +207,10 @@ class BearingSection(Section):
     ] = None
     """I_3/(m_c R^2), I_3 about the column's axis, where both components act; left out:
     solid round columns, (B'/R)^2/2"""
+    ends: Ends | None = None
+    """shape of curved ends: spherical = of revolution about the axis, touching in a
+    point; cylindrical = curved along the motion only, touching along a line, for one
+    component; left out: spherical without a flat part, else as the section says"""
 
 
 class ImpactSection(Section):
@@ -299,9 +304,11 @@ class ColumnSection(Section):
     """Section and material of one column."""
 
     section: Literal["square", "round"]
-    """square columns bear on lines, round ones on points"""
+    """unless bearing.ends says it: square columns with a flat part
+    bear on lines, all others in points"""
     edge_length: Length | None = None
-    """square: L of the line on which a column bears, across the motion"""
+    """square: L of the line on which a column bears, across the motion; also of
+    cylindrical ends"""
     modulus: Modulus
     """E of the column"""
     poisson: Poisson

@@ -297,7 +297,7 @@ def draw_end(axes: style.Axes, bearing: Bearing, bed: Bed | None = None) -> None
         )  # fmt: skip
         words = f"{1e3 * edge:.3g} mm"
         style.note(axes, words, (1.06 * half, edge), (0.0, 3.0), ha="left")
-        title = "an end, enlarged"
+        title = _curved(bearing)
     if bed is not None and bed.contact_share is not None:
         x = B * (1.0 - 2.0 * bed.contact_share)
         y = -3.2 * step
@@ -305,6 +305,15 @@ def draw_end(axes: style.Axes, bearing: Bearing, bed: Bed | None = None) -> None
         words = f"{1e3 * (B - x):.3g} mm in contact at α/10"
         style.note(axes, words, (B, y), (0.0, -4.0), ha="right")
     axes.set_title(title, fontsize=style.small())
+
+
+def _curved(bearing: Bearing) -> str:
+    """The title of an end with arcs: how it touches, if its own shape says so."""
+    if bearing.is_of_revolution:
+        return "enlarged: spherical,\ntouches in a point"
+    if bearing.ends:
+        return "enlarged: cylindrical,\ntouches along a line"
+    return "an end, enlarged"
 
 
 def frame_end(axes: style.Axes, bearing: Bearing, below: float = 0.1) -> None:

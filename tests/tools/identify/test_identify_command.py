@@ -177,7 +177,7 @@ def test_period_and_damping_are_printed_where_no_contact_has_them(
     write_case("spherical.yaml", *changes)
     write_decay(workplace, 0.36, damping)
     found = rps("identify", "spherical.yaml", "floor.csv", "release", exit_code=4)
-    assert "spherical ends have no flat part" in found.stderr
+    assert "ends without a flat part have nothing" in found.stderr
     shown = " ".join(found.stdout.split())
     assert "period 0.36000 " in shown
     assert f"damping {damping:.4f}"[:-1] in shown
