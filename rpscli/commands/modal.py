@@ -54,6 +54,10 @@ ORDER = (
     "Uplifted states are linearised exactly where they begin: rolling at 0, rocking at"
     " beta (0 for flat ends)."
 )
+NEVER_LIFTS = (
+    "Both states are linearised exactly where they begin: rolling at 0, rocking at beta;"
+    " ends without a flat part are never in full contact."
+)
 FIRST_ORDER = "first order"
 """Head of the paper's values: small alpha, rocking continued to 0."""
 
@@ -62,13 +66,15 @@ def _tables(result: ModalResult, title: str, left_out: Collection[str]) -> Itera
     """The podium's own mode, full contact, the fixed base, uplifted, and first yield."""
     yield Heading(title)
     yield _own_mode_table(result).without(left_out)
-    yield ORDER
+    rolls = result.structure.bearing.is_spherical
+    yield NEVER_LIFTS if rolls else ORDER
     if result.left_out:
         yield f"Not in the modes: {listed(result.left_out, 'and')}."
     yield from _full_contact(result)
     if (fixed := result.fixed_base) is None:
         return
-    yield _mode_table(result.fixed_base_state.replace("_", " "), fixed)
+    state = "fixed base" if rolls else result.fixed_base_state.replace("_", " ")
+    yield _mode_table(state, fixed)
     if result.vertical is not None:
         yield _mode_table("vertical", result.vertical)
     yield _vibration_table(result).without(left_out)
@@ -118,7 +124,8 @@ def _vibration_table(result: ModalResult) -> Table:
             cells = shown(w), shown(first[0]), shown(ratio), *percent, shown(over)
             rows.append((name.replace("_", ", "), str(i), *cells))
     heads = "rad/s", FIRST_ORDER, "of fixed base", "xi %", FIRST_ORDER, "of fixed base"
-    return Table.of_texts(("uplifted", "mode", *heads), rows, words=1, keys=2)
+    state = "on bearings" if result.structure.bearing.is_spherical else "uplifted"
+    return Table.of_texts((state, "mode", *heads), rows, words=1, keys=2)
 
 
 def _mode_table(state: str, modes: FixedBaseModes) -> Table:

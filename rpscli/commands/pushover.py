@@ -12,6 +12,7 @@ from rpscli.analyses.result_quantities import PUSHOVER
 from rpscli.commands.inputs import case_folder, conclude, read_case
 from rpscli.commands.shell import options
 from rpscli.errors import UsageError
+from rpscli.report.derived import NEVER_LIFTS
 from rpscli.report.table import Heading, Part, Table, measured, shown
 
 if TYPE_CHECKING:
@@ -79,8 +80,10 @@ def _tables(result: PushoverResult, title: str) -> Iterator[Part]:
     }
     label, stiffness = scalars["initial_stiffness"]
     yield Heading(title)
+    rolls = result.structure.bearing.is_spherical
+    label = NEVER_LIFTS["initial_stiffness"] if rolls else label
     yield Table.listing([
-        scalars["uplift_force"],
+        *([] if rolls else [scalars["uplift_force"]]),
         ("stiffness in full contact" if result.structure.bed else label, stiffness),
         ("largest force", measured(float(result.curve.force.max()), "N")),
         scalars["critical_rotation"],
@@ -95,7 +98,8 @@ def _tables(result: PushoverResult, title: str) -> Iterator[Part]:
             capacity.append(
                 (curve.pattern, shown(curve.roof_displacement_at_uplift), largest)
             )
-        yield Table.of_texts(heads, capacity)
+        table = Table.of_texts(heads, capacity)
+        yield table.without(["roof at uplift m"] * rolls)
     yield from _yielding_tables(result)
 
 

@@ -15,7 +15,6 @@ from dataclasses import asdict, replace
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rpscli.model.column import ArcContact
 from rpscli.report.formulas import formulas, of_column
 from rpscli.report.table import Part, Table, shown
 
@@ -246,6 +245,8 @@ def label_of(row: Derived, found: Mapping[str, Any]) -> str:
     label = row.label if found["flat_width"] else NEVER_LIFTS.get(row.name, row.label)
     contact = found.get("contact_of_arcs")
     if row.name == "contact_rest_pressure" and contact:
+        from rpscli.model.column import ArcContact  # numpy is slow
+
         return f"{label}: {ArcContact(**contact)}"
     return label
 

@@ -337,6 +337,14 @@ def test_check_of_ends_that_never_lift_says_how_they_touch_and_no_uplift(rps, rp
         assert word not in text
 
 
+@pytest.mark.parametrize("command", ["modal", "pushover"])
+def test_other_tables_of_ends_that_never_lift_say_nothing_of_uplift(rps, command):
+    words = command, "small.yaml", *options(*SPHERICAL), "--figures", "none", "-o", "o"
+    text = rps(*words).stdout
+    assert "rolling" in text
+    assert "uplift" not in text.lower()
+
+
 def test_check_says_on_which_line_cylindrical_ends_bear(rps, rps_json):
     line = "podium.column.edge_length=0.7", "podium.bearing.ends=cylindrical"
     sets = options(*SPHERICAL, *DESIGNED, *line)
