@@ -130,6 +130,7 @@ class ColumnDesign:
 
     def line(self, bearing: Bearing) -> float | None:
         """L of the line on which an end bears [m]; None where it touches in a point."""
+        self.refuse_line(bearing)
         return self.edge_length if self.bears_on_line(bearing) else None
 
     def stands_on_corners(self, bearing: Bearing) -> bool:
