@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +31,16 @@ AMPLE = 1.3
 would not let columns slide."""
 
 
+class PlanForces(NamedTuple):
+    """Axial forces of all columns at the instant at which one has the largest."""
+
+    time: float  # [s]
+    end: str  # top or bottom
+    forces: Array
+    """(rows, rows in y) of each column, compression positive [N]; one row in y where
+    only one component acts, for columns beside each other carry alike then."""
+
+
 @dataclass(frozen=True)
 class AxialForces:
     """Axial forces of single columns, of all rows and times, and what the rows share.
@@ -51,6 +62,8 @@ class AxialForces:
     moments: list[tuple[Array, Array]]
     """In x and in y at each time: that of the podium [N m], and mean(x^2)/abs(x) of the
     outer row on the side to which it acts [m]."""
+    plan: PlanForces | None
+    """None without rows."""
     shear: float | None
     """Largest of a column at either end, also of those that carry more or less than the
     mean (16.3) [N]; None without rows, where only the mean of all columns is known."""
@@ -113,6 +126,7 @@ def axial_forces(structure: PodiumStructure, trace: Trace) -> AxialForces:
         sliding_time(structure, trace),
         heaviest,
         moments,
+        _plan(structure, trace, heaviest, moments) if moments else None,
         _largest_shear(structure, trace, (more, less)) if moments else None,
     )
 
@@ -125,6 +139,25 @@ def _levers(places: Sequence[float]) -> tuple[float, float]:
     """
     x = np.array(places) - np.mean(places)
     return tuple((np.mean(x**2) / np.abs((np.min(x), np.max(x)))).tolist())
+
+
+def _plan(
+    structure: PodiumStructure,
+    trace: Trace,
+    heaviest: dict[str, Array],
+    moments: list[tuple[Array, Array]],
+) -> PlanForces:
+    """Axial forces of all columns when the most loaded one has its largest (8.7)."""
+    end = max(heaviest, key=lambda name: float(np.max(heaviest[name])))
+    at = int(np.argmax(heaviest[end]))
+    mean = float(heaviest[end][at])
+    parts = [np.zeros(1), np.zeros(1)]
+    rows = (structure.rows, structure.rows_y)
+    for way, ((moment, lever), places) in enumerate(zip(moments, rows, strict=False)):
+        x = np.array(places) - np.mean(places)
+        parts[way] = moment[at] * x / np.mean(x**2) / structure.columns
+        mean -= abs(float(moment[at])) / float(lever[at]) / structure.columns
+    return PlanForces(float(trace.time[at]), end, mean + np.add.outer(*parts))
 
 
 def _largest_shear(

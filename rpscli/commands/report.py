@@ -24,7 +24,8 @@ from rpscli.report.files import require_writable, undrawn, write_whole
 from rpscli.version import VERSION
 
 if TYPE_CHECKING:
-    from rpscli.commands.report_page import Earlier, PageDone
+    from rpscli.commands.page_done import PageDone
+    from rpscli.commands.report_page import Earlier
 
 PEOPLE = {"project": "project", "author": "made by", "checker": "checked by"}
 """Options with which a page is signed, and their words there."""
@@ -144,8 +145,10 @@ def _page_of(
         return name, partial(loaded(pages.PAGES[kind]), request, earlier, out)
     if kind == pages.SWEEP:
         subject = earlier.subject if earlier else request
+        from rpscli.commands.page_of_study import study_page
+
         study = read(subject, wanted.conditions, out.terminal)
-        return study.layout.study.name, partial(pages.study_page, study, out)
+        return study.layout.study.name, partial(study_page, study, out)
     if earlier is None:
         given = inputs.read_case(request, out.terminal)
         records = wanted.records

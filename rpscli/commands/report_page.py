@@ -1,6 +1,4 @@
-"""Pages of `rps report`: of a case and its histories, a study, a
-design, and of stored results.
-"""
+"""Pages of `rps report` about a case and its histories, and of stored results."""
 
 from __future__ import annotations
 
@@ -15,18 +13,17 @@ from typing import Any, NamedTuple, TypeAlias
 from rpscli.analyses.result_quantities import plain
 from rpscli.case.case import Case, parse_case
 from rpscli.case.conditions import Condition
-from rpscli.case.schema.case_file import DocumentSection
 from rpscli.case.text.document import format_of
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.commands import timehistory_run as run
-from rpscli.commands.inputs import RESULTS, CaseInput, MotionRequest, case_heading
+from rpscli.commands.inputs import CaseInput, MotionRequest, case_heading
+from rpscli.commands.page_done import PageDone, ends
+from rpscli.commands.page_of_records import records_in_short
 from rpscli.commands.page_section import PAGE_SECTIONS
-from rpscli.commands.shell.options import CaseRequest, Output, RunChoices
+from rpscli.commands.shell.options import CaseRequest, Output
 from rpscli.commands.shell.terminal import announce_compilation, concluded
-from rpscli.commands.study import Swept, counts_of_points, swept
-from rpscli.errors import CaseError, RecordError, RpsError, UsageError
-from rpscli.records.ground_motion import GroundMotion
+from rpscli.errors import CaseError, RpsError, UsageError
 from rpscli.records.source import Source
 from rpscli.registry import of_tools
 from rpscli.report import case_page as parts
@@ -40,19 +37,8 @@ from rpscli.report.files import (
     read_json,
     results_of,
 )
-from rpscli.report.limits import verdicts_in_short
-from rpscli.report.page import Block, Notice, Picture, ReportSection, pictures
-from rpscli.report.study.report import labels
-from rpscli.report.study.statistics import (
-    cut,
-    note_of_directions,
-    of_first_system,
-    summary_tables,
-    verdict_table,
-)
+from rpscli.report.page import Block, Notice, ReportSection
 from rpscli.report.table import Table
-from rpscli.studies import Study, StudyResult
-from rpscli.sweep.evaluation import resolved
 
 SUMMARY = "summary.json"
 STORE = "study.sqlite"
@@ -71,8 +57,6 @@ HISTORY_INPUTS = {
     "overrides": [str], "case": dict, "record": (_MOTION,), "records": ([_MOTION],)
 }  # fmt: skip
 """Of one history, or of several."""
-FAILURES_SHOWN = 20
-
 Asked: TypeAlias = tuple[Sequence[str], MotionRequest]
 """Sources of records as they were typed, and what else the command line said of them."""
 
@@ -183,25 +167,6 @@ def kind_of(source: str) -> str:
     return SWEEP if "base" in document.content else HISTORY
 
 
-class PageDone(NamedTuple):
-    """A page's title and sections, what was found for JSON, its
-    error, and who answers for it.
-    """
-
-    title: str
-    subtitle: str
-    sections: Sequence[ReportSection]
-    document: dict[str, Any]
-    error: RpsError | None
-    signed: DocumentSection
-
-
-def ends(case: Case) -> str:
-    """The kind of compliant ends, to follow in a heading."""
-    kind = case.structure.contact.kind
-    return "" if kind == "rigid" else f", {kind} contact"
-
-
 class _Histories(NamedTuple):
     """Histories on a page; `worst` is the place of the one
     that turns the columns most.
@@ -249,7 +214,7 @@ def history_page(
     stored = [*_compared(earlier, histories, made.document)]
     made.results.extend(_extra_sections(given, histories, made, extra, out))
 
-    grounds = [each.ground for each in histories]
+    grounds = {each.label: each.ground for each in histories}
     sections = parts.page_sections(
         case,
         case.title,
@@ -260,7 +225,7 @@ def history_page(
         results=made.results,
         commands=_commands(given, asked, earlier, extra=extra),
         stored=stored,
-        both=any(ground.y is not None for ground in grounds),
+        both=any(ground.y is not None for ground in grounds.values()),
     )
     title = f"{made.title}{ends(case)}"
     signed = case.file.document
@@ -303,8 +268,10 @@ def _single(
     )
     files = _names(history.folder)
     ground = parts.ground_section(history.ground, result.structure, out.look)
-    response = parts.response_section(result, files)
-    results = [ground, response, *parts.column_sections(result, files)]
+    plan = parts.plan_picture(result, history.label, out.look)
+    response = parts.response_section(result, files, plan=plan)
+    columns = parts.column_sections(result, files, history.label)
+    results = [ground, response, *columns]
     title = f"Time history under {record_name(result)}"
     return _Histories(title, short, results, history.document, history.error)
 
@@ -324,18 +291,25 @@ def _several(
     worst = max(range(len(turned)), key=lambda n: 0.0 if isnan(turned[n]) else turned[n])
     result = run.compute(histories[worst], conditions, out)
     files = _names(histories[worst].folder)
-    motions = parts.horizontal(*(history.ground for history in histories))
+    components = [
+        (f"{history.label}{', y' * (motion is history.ground.y)}", motion)
+        for history in histories
+        for motion in parts.horizontal(history.ground)
+    ]
+    names, motions = zip(*components, strict=True)
+    label = histories[worst].label
+    plan = parts.plan_picture(result, label, out.look)
     all_of = f"{len(motions)} records"
     largest = "Response to the record with the largest rotation of the columns, "
     figures = ("orbit", "rotation", "storey_shears")
+    scaled = "as they were scaled"
     results = [
-        parts.motions_section(motions, [], all_of, out.look, "as they were scaled"),
-        parts.response_section(result, files, f"{largest}{record_name(result)}", figures),
-        *parts.column_sections(result, files),
+        parts.motions_section(motions, [], all_of, out.look, scaled, names),
+        parts.response_section(result, files, f"{largest}{label}", figures, plan),
+        *parts.column_sections(result, files, label),
     ]
     title = f"Time histories under {len(histories)} records"
-    short = [verdicts_in_short(found.verdicts), *[*run.set_tables([found])][1:]]
-    return _Histories(title, short, results, document, error, worst)
+    return _Histories(title, records_in_short(found), results, document, error, worst)
 
 
 def _names(folder: OutputFolder) -> list[tuple[str, object]]:
@@ -452,131 +426,3 @@ def _differing_results(
         f"{text} Different: {len(differing)}; this page shows what was computed again."
     )
     yield Table.of_texts(("result", "stored", "computed anew"), differing, words=1)
-
-
-def study_page(study: Study, out: Output) -> PageDone:
-    """Compute the points that are not stored yet, and put all in order."""
-    layout = study.layout
-    folder = study.output(out.place or RESULTS / layout.study.name / "sweep")
-    # What is in a folder is shown, not added to.
-    choices = RunChoices(report_only=out.place is not None)
-    done = swept("report", study, folder, choices, out)
-    out.terminal.warn(done.notes)
-    first = resolved(layout.plan, layout[0].values)
-    varied = any(key.startswith("podium.contact") for key in layout.plan.keys)
-    contact = ", contact varied" if varied else ends(first)
-    which = []
-    if (systems := len(layout.properties)) > 1:
-        named = labels(layout.plan.keys, layout[0].values)
-        which = [f"The first of {systems} systems: {named}."]
-    words = CaseRequest(layout.study.source, study.overrides).words
-    stored = (
-        f"Every point is stored in {folder.folder}; points.csv there has them all,"
-        " failed.csv the command that computes each failed point alone."
-    )
-    sections = parts.page_sections(
-        first,
-        study.title,
-        out.look,
-        short=_in_short(done.result),
-        warnings=_study_warnings(done),
-        inputs=study_input(
-            study, first, "The case" if systems == 1 else "Its first system"
-        ),
-        results=_study_results(done, out),
-        commands=[["rps", "sweep", *words], ["rps", "report", *words]],
-        stored=[stored],
-        both=all(layout.pairs),
-        which=which,
-    )
-    subtitle = f"Study of {len(done.result)} points{contact}"
-    signed = layout.study.file.document
-    return PageDone(
-        study.title, subtitle, sections, done.document("report"), done.error, signed
-    )
-
-
-def _study_results(done: Swept, out: Output) -> Iterator[ReportSection]:
-    """Figures; ground motions and statistics before them where there are histories."""
-    study = done.result.study
-    if done.result.summary:
-        yield parts.motions_section(*motions_of(study), study.title, out.look)
-        statistics = [
-            *summary_tables(done.result.summary),
-            of_first_system(study.layout),
-            *done.found.parts,
-        ]
-        yield ReportSection("Statistics", [*cut(statistics)])
-    yield figures(done.found.files, study)
-
-
-def _study_warnings(done: Swept) -> Iterator[str]:
-    """Doubts, reports that failed, and the first of the points that did."""
-    failures = done.found.failures
-    yield from (*done.notes, *map(str, done.found.broken))
-    for failure in failures[:FAILURES_SHOWN]:
-        yield f"Point {failure.point} failed: {failure.message}"
-    if len(failures) > FAILURES_SHOWN:
-        yield f"{len(failures)} points failed; these are the first of them"
-
-
-def _in_short(run: StudyResult) -> Iterator[Block]:
-    """Counts of outcomes, and verdicts."""
-    counts = counts_of_points(run)
-    yield Table.of_texts(tuple(counts), [tuple(map(str, counts.values()))], words=0)
-    if aim := run.layout.scaled_to:
-        yield f"Records are scaled to {aim}."
-    if run.summary is not None:
-        yield verdicts_in_short(run.judgements, " of a system at an intensity")
-        if run.judgements:
-            yield from cut([verdict_table(run.summary, run.judgements)])
-        if note := note_of_directions(run.layout):
-            yield Notice(note)
-
-
-def motions_of(study: Study) -> tuple[list[GroundMotion], list[str]]:
-    """The records before they are scaled, and why some cannot be read."""
-    layout = study.layout
-    motions = []
-    reasons = []
-    own = [
-        properties.record for properties in layout.properties if None in layout.records
-    ]
-    for request in filter(None, dict.fromkeys((*layout.records, *own))):
-        try:
-            motions.append(layout.context.records.motion(request).horizontal)
-        except RecordError as error:
-            reasons.append(str(error))
-    return motions, reasons
-
-
-def figures(files: Mapping[str, object], study: Study) -> ReportSection:
-    """All of them, with the kind and the title of the report that each is of."""
-    drawn = []
-    for stem, each in pictures(files.items()).items():
-        request = study.reports.get(stem)
-        kind, title = (request.kind, request.options.title) if request else (stem, None)
-        caption = f"{kind.replace('_', ' ').capitalize()}{f': {title}' if title else ''}."
-        drawn.append(Picture(each, caption))
-    return ReportSection("Figures", drawn)
-
-
-def study_input(study: Study, first: Case, which: str) -> Iterator[Block]:
-    """The file as it is written, and a case of it."""
-    checked = study.layout.study
-    plan = study.layout.plan
-    yield parts.listing([
-        ("file", checked.source),
-        ("SHA-256 of its text", checked.digest),
-        ((
-            "case at"
-            " its"
-            " base"
-        ), str(checked.base_file) if checked.base_file else "in the study"),
-        ("overridden values", ", ".join(study.overrides)),
-        ("solver", plan.solver),
-    ])  # fmt: skip
-    yield "What it says:"
-    yield parts.input_table(checked.document.content)
-    yield f"{which}, as it is written and in SI units, with all defaults:"
-    yield parts.input_table(first.document, first.written)

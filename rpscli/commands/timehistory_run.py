@@ -69,6 +69,13 @@ DIGITS = 4
 OF_ONE_COLUMN = ("max_column_force", "column_moment")
 A_TABLE = 4
 """Quantities side by side in a table that fits a page."""
+STATISTICS = {
+    "mean": "mean of maxima",
+    "median": "median",
+    "high": "84 %",
+    "largest": "largest",
+}
+"""Words for attributes of a `Spread`, below the records of a table."""
 CODES = (
     "codes take the mean of the maxima of 7 records (EN 1998-1) or 11 pairs (ASCE/SEI"
     " 7-16, chapter 16) and more; with 3 to 6 records EN 1998-1 takes the largest"
@@ -497,12 +504,7 @@ def _records_table(case: Computed, quantities: dict[ResultQuantity, Spread]) -> 
         values = [large(document[q.name], q.unit)[0] for q in quantities]
         rows.append([label, word, *(shown(value, DIGITS) for value in values)])
     if len(case.histories) > 1:
-        words = {
-            "mean": "mean of maxima",
-            "median": "median",
-            "high": "84 %",
-            "largest": "largest",
-        }
+        words = dict(STATISTICS)
         if case.together.rows[0].overturned.number:
             words |= {
                 "low_stands": "least that stands",

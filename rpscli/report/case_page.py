@@ -18,6 +18,7 @@ from rpscli.analyses.results import STEEL_ROTATION, TimeHistoryResult
 from rpscli.analyses.timehistory import Neighbour
 from rpscli.case.case import Case
 from rpscli.case.schema.keys import unit
+from rpscli.case.text.yaml_text import yaml_of
 from rpscli.errors import listed
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
@@ -28,11 +29,13 @@ from rpscli.report.column_table import column_table
 from rpscli.report.figures import style
 from rpscli.report.figures.look import Look
 from rpscli.report.figures.motions import draw_spectra, record_figure
+from rpscli.report.figures.plan import ColumnPlan, draw_plan
 from rpscli.report.figures.structure import bearing_figure, draw_structure
 from rpscli.report.files import leaves, versions
 from rpscli.report.limits import limits_table, verdicts_in_short
 from rpscli.report.motions import record_table
 from rpscli.report.page import (
+    Attachment,
     Block,
     Listing,
     Notice,
@@ -41,7 +44,7 @@ from rpscli.report.page import (
     page_look,
     pictures,
 )
-from rpscli.report.table import Column, Table
+from rpscli.report.table import PAGE_UNITS, Column, Table, large
 from rpscli.sweep.statistics.verdicts import Verdict
 
 MOST_ROWS = 100
@@ -72,23 +75,29 @@ def motions_section(
     title: str,
     look: Look,
     which: str = "before they are scaled",
+    names: Sequence[str] = (),
 ) -> ReportSection:
-    """Records of a study, or of several histories: peaks, digests and spectra."""
+    """Records of a study, or of several histories: peaks, digests and spectra.
+
+    With `names` of histories, each record is called by its name, beside its source.
+    """
     blocks: list[Block] = [*unreadable]
     if motions:
         heads = (
-            "record",
+            *(("record", "source") if names else ("record",)),
             "SHA-256 begins with",
             "duration [s]",
             "PGA [m/s2]",
             "PGV [m/s]",
         )
         rows = []
-        for each in motions[:MOST_ROWS]:
+        for place, each in enumerate(motions[:MOST_ROWS]):
             of = intensity_measures(each)
+            called = (names[place],) if names else ()
             numbers = map("{:.4g}".format, (each.duration, of.pga, of.pgv, of.d5_95))
-            rows.append((each.source, each.digest[:16], *numbers))
-        blocks.append(Table.of_texts((*heads, "5-95 % [s]"), rows, words=2))
+            rows.append((*called, each.source, each.digest[:16], *numbers))
+        words = 2 + bool(names)
+        blocks.append(Table.of_texts((*heads, "5-95 % [s]"), rows, words=words))
         spectra = [drawn_spectrum(each) for each in motions[:MOST_SPECTRA]]
         caption = (
             f"Response spectra of {len(spectra)} records {which}, at"
@@ -248,8 +257,9 @@ def _as_typed(value: object) -> str:
 def derived_blocks(structure: PodiumStructure, podium: Mapping[str, Any]) -> list[Block]:
     """Derived quantities with formulas, and with the numbers put in."""
     text = (
-        "Angles are in radians, everything else in SI units. The numbers put in are"
-        f" rounded to {DIGITS} digits; the values follow from unrounded ones. The"
+        "The numbers put in are in SI units, angles in radians, rounded to"
+        f" {DIGITS} digits; the values follow from unrounded ones, in kN, kN m, MPa and"
+        " t where SI has N, N m, Pa and kg. The"
         f" formulas are derived in {THEORY}, sections 1 to 7, 12, 14 and 16. f, κ and"
         " e_given are factor, loss and restitution of podium.impact, I is"
         " podium.bearing.inertia_ratio."
@@ -263,13 +273,18 @@ def _derived(found: Iterable[derived.Derivation]) -> Table:
             *row[1:3],
             row.formula or "from the case",
             row.numbers,
-            _number(row.value),
-            row.unit.strip("-"),
+            *_in_large_units(row.value, row.unit),
         )
         for row in found
     ]
     heads = ("quantity", "symbol", "formula", "with numbers", "value", "unit")
     return Table.of_texts(heads, rows, words=4)
+
+
+def _in_large_units(value: float | None, unit: str) -> tuple[str, str]:
+    """A value and its unit as checkers read them."""
+    number, name = large(value, unit)
+    return _number(number), name
 
 
 def hidden_table(*, both: bool) -> Table:
@@ -342,14 +357,32 @@ def response_section(
     files: Iterable[tuple[str, object]],
     title: str = "Response",
     figures: Iterable[str] = (),
+    plan: Picture | None = None,
 ) -> ReportSection:
-    """The tables of a history, and all of its figures or some."""
+    """The tables of a history, all of its figures or some, and the plan of the columns."""
     wanted = {*figures} or CAPTIONS.keys() - {"column"}
     drawn = [
         (CAPTIONS[stem], each) for stem, each in pictures(files).items() if stem in wanted
     ]
     shown = [Picture(each, caption) for caption, each in drawn]
-    return ReportSection(title, [*timehistory.demand_tables(result), *shown])
+    shown += [plan] if plan else []
+    return ReportSection(title, [*timehistory.demand_tables(result, PAGE_UNITS), *shown])
+
+
+def plan_picture(result: TimeHistoryResult, label: str, look: Look) -> Picture | None:
+    """The plan of the columns with the axial force of each, where it is known."""
+    plan = None if result.axial is None else result.axial.plan
+    if plan is None or not result.structure.counts_columns:
+        return None
+    alike = "" if result.both_components else " Columns of one row carry alike."
+    caption = (
+        f"The columns in plan, symbols not to scale, with their axial forces in kN at the"
+        f" {plan.end} at t = {plan.time:.5g} s under {label}, when that of the most loaded"
+        f" column (red) is largest.{alike}"
+    )
+    words = (f"axial forces of the columns at t = {plan.time:.5g} s", label)
+    of = ColumnPlan(result.structure, plan)
+    return _picture(style.single(draw_plan, of, words, 4.6, 6.0), look, caption)
 
 
 STEEL_ON_STEEL = {
@@ -364,10 +397,10 @@ STEEL_ON_STEEL = {
 
 
 def column_sections(
-    result: TimeHistoryResult, files: Iterable[tuple[str, object]]
+    result: TimeHistoryResult, files: Iterable[tuple[str, object]], label: str
 ) -> Iterator[ReportSection]:
     """Section on the demands on the most loaded column, with the numbers of its worst
-    instants put in.
+    instants put in, under a record called `label`.
     """
     if result.column_demand is None:
         return
@@ -384,26 +417,29 @@ def column_sections(
     )
     yield ReportSection("Forces and pressures of a column", [
         (
-            f"Maxima at instants of a dense trace under {result.record.name}{without}."
+            f"Maxima at instants of a dense trace under {label}{without}."
         ),
         *column_table(result),
         *([Picture(drawn, CAPTIONS["column"])] if drawn else []),
-        "With numbers, in SI units (THEORY.md, section 16):",
+        "With numbers, put in in SI units (THEORY.md, section 16):",
         _derived(derived.column_derivations(result)),
         codes,
     ])  # fmt: skip
 
 
 def case_input(
-    case: Case, overrides: Sequence[str], grounds: Sequence[MotionComponents]
+    case: Case,
+    overrides: Sequence[str],
+    grounds: Mapping[str, MotionComponents],
 ) -> Iterator[Block]:
-    """Sources of case and motions, and every key of the case."""
+    """Sources of case and motions by their labels, every key of the case, and its file."""
     motions = {}
-    for number, ground in enumerate(grounds, 1):
+    for label, ground in grounds.items():
         for component, each in ground.named.items():
             name = f"{component} record".removeprefix("horizontal ")
             # The table of several records has their digests.
-            name += f" {number}" * (len(grounds) > 1)
+            if len(grounds) > 1:
+                name = f"{label}, {component}".removesuffix(", horizontal")
             motions[name] = f"{each.source}, scaled by {ground.scale:.9g}"
             if len(grounds) == 1:
                 motions[f"SHA-256 of the scaled samples, {name}"] = each.digest
@@ -415,3 +451,4 @@ def case_input(
     ])  # fmt: skip
     yield "The case as it is written and in SI units, with all defaults:"
     yield input_table(case.document, case.written)
+    yield Attachment(f"{case.name}.yaml", yaml_of(case.written or case.document))

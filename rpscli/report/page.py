@@ -164,7 +164,15 @@ class Notice(str):
     __slots__ = ()
 
 
-Block = str | Table | Picture | Listing | Notice
+@dataclass(frozen=True)
+class Attachment:
+    """A text file that readers save or copy from the page."""
+
+    name: str
+    text: str
+
+
+Block = str | Table | Picture | Listing | Notice | Attachment
 
 
 @dataclass(frozen=True)
@@ -254,10 +262,28 @@ def _block(block: Block, drawn: Iterator[Markup]) -> Markup:
             return next(drawn)
         case Listing():
             return element("pre", block)
+        case Attachment():
+            return _attachment(block)
         case Notice():
             return element("p", block, class_="notice")
         case str():
             return element("p", block)
+
+
+def _attachment(file: Attachment) -> Markup:
+    """A link that saves the file, which is in the page, and its text to copy."""
+    content = base64.b64encode(file.text.encode("utf-8", "replace")).decode()
+    link = element(
+        "a",
+        f"save {file.name}",
+        href=f"data:text/plain;charset=utf-8;base64,{content}",
+        download=file.name,
+    )
+    shown = element("pre", file.text, class_="copied")
+    summary = element("summary", f"text of {file.name}, to copy")
+    return element(
+        "div", element("p", link), element("details", summary, shown), class_="attachment"
+    )
 
 
 def _table(table: Table) -> Markup:

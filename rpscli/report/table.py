@@ -10,10 +10,17 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import (
+    Callable,
+    Collection,
+    Iterable,
+    Iterator,
+    Mapping,
+    Sequence,
+)
 from dataclasses import dataclass, replace
 from itertools import islice
-from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias, cast
 
 from rpscli.units import Written, digits_beside, si_factor
 
@@ -59,17 +66,24 @@ def standing(value: float | None, digits: int = 4) -> str:
     return shown(value if value is not None and math.isfinite(value) else None, digits)
 
 
-LARGE_UNITS = {
+Units: TypeAlias = Mapping[str, tuple[str, float]]
+
+LARGE_UNITS: Units = {
     "N": ("kN", 1e-3), "J": ("kJ", 1e-3), "kg": ("t", 1e-3), "N/m": ("kN/m", 1e-3),
     "N m": ("kN m", 1e-3), "Pa": ("MPa", 1e-6),
 }  # fmt: skip
 """Names for many of an SI unit, and the factor; other units are shown as they are."""
 
+PAGE_UNITS: Units = {**LARGE_UNITS, "m": ("mm", 1e3)}
+"""Those of pages for a checker, as drawings have them."""
 
-def large(value: float | None, unit: str) -> tuple[float | None, str]:
+
+def large(
+    value: float | None, unit: str, units: Units = LARGE_UNITS
+) -> tuple[float | None, str]:
     """A value in SI and its unit as people read them."""
-    if unit in LARGE_UNITS:
-        name, factor = LARGE_UNITS[unit]
+    if unit in units:
+        name, factor = units[unit]
         return None if value is None else value * factor, name
     return value, "" if unit == "-" else unit
 
@@ -79,12 +93,17 @@ def headed(label: str, unit: str) -> str:
     return f"{label} {large(None, unit)[1]}".strip()
 
 
-def measured(value: float | None, unit: str, like: float | None = None) -> str:
+def measured(
+    value: float | None,
+    unit: str,
+    like: float | None = None,
+    units: Units = LARGE_UNITS,
+) -> str:
     """A value in SI as text with its unit: that in which another
     one was written, if it was; with digits that tell both apart.
     """
-    number, name = large(value, unit)
-    other = large(like, unit)[0]
+    number, name = large(value, unit, units)
+    other = large(like, unit, units)[0]
     if value is not None and isinstance(like, Written) and like.unit:
         name = like.unit
         number, other = (each / si_factor(name, unit) for each in (value, like))

@@ -28,10 +28,12 @@ from rpscli.report.derived import UPPER
 from rpscli.report.limits import limits_table
 from rpscli.report.storey_demands import Array, fixed_base_demands, isolated_demands
 from rpscli.report.table import (
+    LARGE_UNITS,
     Column,
     Heading,
     Part,
     Table,
+    Units,
     measured,
     percent,
     shown,
@@ -72,14 +74,16 @@ def timehistory_tables(
         yield limits_table(verdicts)
 
 
-def demand_tables(result: TimeHistoryResult) -> Iterator[Table | str]:
+def demand_tables(
+    result: TimeHistoryResult, units: Units = LARGE_UNITS
+) -> Iterator[Table | str]:
     """Largest demands; of storeys, of those that yield and of
     devices, if there are any.
     """
     rows = [
-        *_of_storey(result),
-        *_of_building(result),
-        *_of_contacts(result),
+        *_of_storey(result, units),
+        *_of_building(result, units),
+        *_of_contacts(result, units),
         *_energy(result),
     ]
     heads = ["", "on bearings", "normalised", f"{_elastic(result)}fixed base"]
@@ -89,7 +93,7 @@ def demand_tables(result: TimeHistoryResult) -> Iterator[Table | str]:
         yield _storeys_table(result)
     yield from _yielded_tables(result)
     if result.devices:
-        yield _devices_table(result)
+        yield _devices_table(result, units)
 
 
 def outcome_text(result: TimeHistoryResult) -> str:
@@ -247,34 +251,35 @@ def _rows(
     *names: str,
     normalised: str = "",
     fixed: float | None = None,
+    units: Units = LARGE_UNITS,
 ) -> Iterator[Row]:
     """A row of each result that the history has."""
     for name in names:
         _, unit, label, *_ = EVERY[name]
         if (value := getattr(result, name)) is not None:
-            beside = "" if fixed is None else measured(fixed, unit)
-            yield label, measured(value, unit), normalised, beside
+            beside = "" if fixed is None else measured(fixed, unit, units=units)
+            yield label, measured(value, unit, units=units), normalised, beside
 
 
-def _of_storey(result: TimeHistoryResult) -> Iterator[Row]:
+def _of_storey(result: TimeHistoryResult, units: Units) -> Iterator[Row]:
     """Rotation and displacement of the columns, and what remains of them."""
     yield from _rows(
         result, "max_rotation", normalised=f"{shown(result.rotation_ratio)} theta_cr"
     )
     yield from _azimuth(result.max_rotation_azimuth)
     yield from _rows(result, "max_rotation_time", "critical_passage_time")
-    ways = _ways(result, "max_cap_beam_displacement")
-    yield from _rows(result, "max_cap_beam_displacement", normalised=ways)
-    yield from _rows(result, "max_lift")
+    ways = _ways(result, "max_cap_beam_displacement", units)
+    yield from _rows(result, "max_cap_beam_displacement", normalised=ways, units=units)
+    yield from _rows(result, "max_lift", units=units)
     if result.residual_rotation > 0.0:
         ratio = f"{shown(result.residual_rotation / result.critical_rotation)} theta_cr"
         yield from _rows(result, "residual_rotation", normalised=ratio)
         yield from _azimuth(result.residual_azimuth)
-        yield from _rows(result, "residual_displacement")
+        yield from _rows(result, "residual_displacement", units=units)
     yield from _rows(result, "max_damper_force", "max_stop_force", "lost_prestress")
 
 
-def _of_building(result: TimeHistoryResult) -> Iterator[Row]:
+def _of_building(result: TimeHistoryResult, units: Units) -> Iterator[Row]:
     if (fixed := result.fixed_base) is None:
         return
     ratio = ""
@@ -282,7 +287,7 @@ def _of_building(result: TimeHistoryResult) -> Iterator[Row]:
         ratio = f"{shown(result.base_shear_ratio)} V_st"
     yield from _rows(result, "max_base_shear", normalised=ratio, fixed=fixed.base_shear)
     if result.both_components:
-        yield "  in x, in y", _ways(result, "max_base_shear"), "", ""
+        yield "  in x, in y", _ways(result, "max_base_shear", units), "", ""
     yield from _with_dashpots(result)
     yield from _rows(result, "uplift_shear_ratio", "fixed_base_ratio")
     largest = float(np.max(fixed.floor_accelerations))
@@ -292,7 +297,7 @@ def _of_building(result: TimeHistoryResult) -> Iterator[Row]:
         "max_roof_displacement",
         "max_floor_velocity",
     )
-    yield from _rows(result, *further)
+    yield from _rows(result, *further, units=units)
     demands = fixed_base_demands(result)
     if demands is not None and demands.storey_drift_ratios is not None:
         yield from _rows(
@@ -300,9 +305,9 @@ def _of_building(result: TimeHistoryResult) -> Iterator[Row]:
         )
     if result.structure.yields:
         residual = result.residual_drift_ratio
-        yield from _rows(result, "ductility", "plastic_drift")
+        yield from _rows(result, "ductility", "plastic_drift", units=units)
         of_height = "" if residual is None else f"{shown(residual)} of the height"
-        yield from _rows(result, "residual_drift", normalised=of_height)
+        yield from _rows(result, "residual_drift", normalised=of_height, units=units)
 
 
 def _with_dashpots(result: TimeHistoryResult) -> Iterator[Row]:
@@ -315,7 +320,7 @@ def _with_dashpots(result: TimeHistoryResult) -> Iterator[Row]:
     yield "  with dashpots of storeys", measured(both, "N"), words, ""
 
 
-def _of_contacts(result: TimeHistoryResult) -> Iterator[Row]:
+def _of_contacts(result: TimeHistoryResult, units: Units) -> Iterator[Row]:
     """Impacts or passes, joints, friction, and forces of one
     column, or of all together.
     """
@@ -323,7 +328,7 @@ def _of_contacts(result: TimeHistoryResult) -> Iterator[Row]:
     e = result.structure.restitution
     if not structure.bearing.is_spherical:
         yield "restitution at impact e", shown(e), f"e2 = {shown(e * e)}", ""
-    yield from _passes(result)
+    yield from _passes(result, units)
     if structure.bed is not None:
         yield from _rows(
             result, "full_contact_share", "max_impact_number", "edge_pressure_ratio"
@@ -384,15 +389,16 @@ def _azimuth(angle: float | None) -> Iterator[Row]:
         yield "  towards", f"{shown(math.degrees(angle))} deg from x", "", ""
 
 
-def _ways(result: TimeHistoryResult, name: str) -> str:
+def _ways(result: TimeHistoryResult, name: str, units: Units) -> str:
     """A result in x and in y; empty where one component acts."""
     if not result.both_components:
         return ""
-    x, y = (measured(getattr(result, f"{name}_{way}"), EVERY[name].unit) for way in "xy")
+    unit = EVERY[name].unit
+    x, y = (measured(getattr(result, f"{name}_{way}"), unit, units=units) for way in "xy")
     return f"x {x}, y {y}"
 
 
-def _passes(result: TimeHistoryResult) -> Iterator[Row]:
+def _passes(result: TimeHistoryResult, units: Units) -> Iterator[Row]:
     """Uplifts and impacts, or passes near upright: their number, the
     closest, and the shortest.
     """
@@ -407,7 +413,7 @@ def _passes(result: TimeHistoryResult) -> Iterator[Row]:
         yield EVERY["closest_pass"].label, f"{shown(result.closest_pass)} alpha", "", ""
         yield from _rows(result, "shortest_pass")
     if result.both_components:
-        yield from _rows(result, "torsion_lever")
+        yield from _rows(result, "torsion_lever", units=units)
 
 
 ROUND = (
@@ -524,12 +530,15 @@ def _yielded_tables(result: TimeHistoryResult) -> Iterator[Table | str]:
         yield f"storey {most + 1}, not the first, has the largest ductility{reason}"
 
 
-def _devices_table(result: TimeHistoryResult) -> Table:
+def _devices_table(result: TimeHistoryResult, shown_in: Units) -> Table:
     """Largest demands of each device, and what its prestress is at the end."""
     units = {"force": "N", "stroke": "m", "velocity": "m/s", "energy": "J"}
     rows = []
     for index, demand in enumerate(result.devices):
-        texts = [measured(getattr(demand, name), unit) for name, unit in units.items()]
+        texts = [
+            measured(getattr(demand, name), unit, units=shown_in)
+            for name, unit in units.items()
+        ]
         left = demand.remaining_prestress
         prestress = "" if left is None else f"prestress {measured(left, 'N')} left"
         rows.append([f"{index} {demand.kind}", *texts, prestress])

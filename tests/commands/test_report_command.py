@@ -1,5 +1,6 @@
 """`rps report`: pages of cases, of studies, and of folders of results."""
 
+import base64
 import json
 import math
 import re
@@ -10,6 +11,7 @@ import pytest
 from paper_structures import python
 from sweep.small_studies import ROOT
 
+from rpscli.case.case import load_case
 from rpscli.report.table import shown
 from rpscli.sweep.run import Progress
 
@@ -320,6 +322,49 @@ def test_several_records_are_on_one_page(rps, rps_json):
     typed = " ".join(f"--record '{pulse.removeprefix('--record=')}'" for pulse in PULSES)
     assert f"rps timehistory small.yaml {typed} --scale 1.1 rps report set" in unescape(
         again
+    )
+
+
+def test_verdicts_come_first_then_one_table_in_the_units_of_the_limits(rps, rps_json):
+    """Results with limits, then main ones; each record by one name."""
+    limits = "limits={max_lift: 30 cm, drift_ratio: 0.9}"
+    given = ("small.yaml", *PULSES, "--set", limits)
+    document = rps_json("report", *given, "-o", "out.html")
+    text = text_of("out.html")
+    labels = document["sets"][0]["records"]
+    heads = "record lift of the building cm drift ratio rotation ratio cap beam"
+    assert text.index("All 3 limits are met") < text.index("at most 30 cm in every")
+    assert text.index("at most 30 cm in every") < text.index(heads)
+    for label, history in zip(labels, document["histories"], strict=True):
+        lift = shown(100.0 * history["max_lift"])
+        ratio = shown(history["drift_ratio"])
+        assert f"{label} survived {lift} {ratio}" in text
+    assert f"{labels[0]} {PULSES[0].removeprefix('--record=')}" in unescape(text)
+    moved = max(each["max_cap_beam_displacement"] for each in document["histories"])
+    assert f"cap beam displacement {shown(1e3 * moved)} mm" in text
+
+
+def file_of(page):
+    """The case that a page holds as a file."""
+    html = Path(page).read_text(encoding="utf-8")
+    (found,) = re.findall(r'href="data:text/plain;charset=utf-8;base64,([^"]*)"', html)
+    return base64.b64decode(found)
+
+
+@pytest.mark.parametrize("title", ["A <b>", "1e5", "on", "0o17", "a: b # c"])
+def test_the_case_on_a_page_is_a_file_with_what_was_overridden(rps, title):
+    changed = ("--set", "podium.bearing.slenderness=0.14", "--set", f"title='{title}'")
+    rps("report", "small.yaml", *changed, "-o", "out.html")
+    Path("copy.yaml").write_bytes(file_of("out.html"))
+    assert (
+        load_case("copy.yaml").document == load_case("small.yaml", changed[1::2]).document
+    )
+    # That of a folder is the case as it was then.
+    rps("timehistory", "small.yaml", *changed, "-o", "old", "--figures", "none")
+    rps("report", "old", "-o", "again.html")
+    Path("copy.yaml").write_bytes(file_of("again.html"))
+    assert (
+        load_case("copy.yaml").document == load_case("small.yaml", changed[1::2]).document
     )
 
 

@@ -15,11 +15,12 @@ from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.loading import load_record
 from rpscli.report import derived
 from rpscli.report.case_page import column_sections
+from rpscli.report.column_instants import column_table
 from rpscli.report.derived import FUNCTIONS, column_derivations, derivations
 from rpscli.report.figures.bearing import column_figure
 from rpscli.report.page import Picture
 from rpscli.report.table import Table
-from rpscli.report.timehistory import column_table, timehistory_document
+from rpscli.report.timehistory import timehistory_document
 
 CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.yaml"))
 SIX = next(path for path in CASES if path.stem == "six_storey")
@@ -163,9 +164,9 @@ def test_instants_and_their_formulas(name, monkeypatch):
     table, *_ = column_table(result)
     assert isinstance(table, Table)
     assert [row[0] for row in table.rows][:2] == ["moment", "axial force"]
-    (section,) = column_sections(result, [])
+    (section,) = column_sections(result, [], "a record")
     assert not any(isinstance(block, Picture) for block in section.blocks)
-    assert "impulse of beam and columns" in str(section.blocks[0])
+    assert "under a record, without the impulse of beam" in str(section.blocks[0])
     assert drawn(column_figure, result, "title").axes
     instants = timehistory_document(result)["column_instants"]
     assert instants[0]["moment"] == pytest.approx(found[3].value, rel=1e-12)

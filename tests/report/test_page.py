@@ -1,5 +1,6 @@
 """A page holds together: text stays text, names are used once, and nothing is fetched."""
 
+import base64
 import io
 import re
 from collections import Counter
@@ -21,6 +22,7 @@ from rpscli.report.figures.look import USUAL
 from rpscli.report.files import Drawing, undrawn
 from rpscli.report.page import (
     MOST_BYTES,
+    Attachment,
     Listing,
     Notice,
     Picture,
@@ -205,3 +207,16 @@ def test_a_long_record_leaves_the_page_small_enough_to_be_sent():
 
 def test_spaces_of_drawings_are_no_control_characters():
     assert printable("0.1\u2009m\u00a0x\x07") == "0.1\u2009m\u00a0x\ufffd"
+
+
+def test_a_file_in_a_page_is_saved_as_it_is_and_is_only_text():
+    text = f"title: ü {HOSTILE}\n"
+    made = Parsed(page("t", "s", [ReportSection("x", [Attachment(HOSTILE, text)])], "n"))
+    ((kind, content),) = (
+        of["href"].split(",", 1) for _, of in made.tags if "download" in of
+    )
+    assert kind == "data:text/plain;charset=utf-8;base64"
+    assert base64.b64decode(content).decode() == text
+    assert next(made.all("download")) == HOSTILE
+    assert "script" not in [tag for tag, _ in made.tags]
+    assert printable(text) in made.texts

@@ -4,8 +4,9 @@ scalars and no duplicate keys.
 
 from __future__ import annotations
 
+import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -314,3 +315,11 @@ def _scalar(tag: str, text: str) -> bool | int | float | str | None:
     if len(text) > 400:  # far outside every quantity, and slow to convert
         raise ValueError(f"a whole number of {len(text)} digits is too long")
     return int(text, {"0o": 8, "0x": 16}.get(text[:2], 10))
+
+
+def yaml_of(values: Mapping[str, Any]) -> str:
+    """Values as the text of a file, which `read_yaml` reads as the same values."""
+    text = yaml.safe_dump(dict(values), sort_keys=False, allow_unicode=True, width=100)
+    if read_yaml(text, "").content != values:  # texts that are numbers in YAML 1.2 alone
+        text = json.dumps(values, indent=2, ensure_ascii=False) + "\n"
+    return text

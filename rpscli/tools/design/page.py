@@ -4,14 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rpscli.commands.report_page import (
-    Earlier,
-    PageDone,
-    ends,
-    figures,
-    motions_of,
-    study_input,
-)
+from rpscli.commands.page_done import PageDone, ends
+from rpscli.commands.page_of_study import figures, motions_of, study_input
+from rpscli.commands.report_page import Earlier
 from rpscli.commands.shell.options import CaseRequest, Output, RunChoices
 from rpscli.report import case_page as parts
 from rpscli.report.table import Heading
