@@ -63,7 +63,7 @@ def command(
     terminal: Terminal,
     motion: inputs.MotionRequest,
     *,
-    extra: tuple[str, ...],
+    extra: dict[str, str],
     force: bool,
     **people: str | None,
 ) -> None:
@@ -107,7 +107,7 @@ class _Wanted(NamedTuple):
     records: tuple[str, ...]
     motion: inputs.MotionRequest
     conditions: list[Condition]
-    extra: tuple[str, ...]
+    extra: dict[str, str]
 
 
 def _unfit(wanted: _Wanted, kind: str, *, stored: bool) -> str:
@@ -126,7 +126,7 @@ def _unfit(wanted: _Wanted, kind: str, *, stored: bool) -> str:
         )
         return f"{owner}; leave --record, --vertical and --scale out"
     if wanted.extra and kind != pages.HISTORY:
-        return f"--{wanted.extra[0]} is about one history; name a case"
+        return f"--{next(iter(wanted.extra))} is about one history; name a case"
     if wanted.conditions and kind in pages.PAGES:
         return f"a {kind} has limits of its own; leave --fail-on out"
     return ""

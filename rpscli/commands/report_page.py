@@ -20,7 +20,12 @@ from rpscli.commands import timehistory_run as run
 from rpscli.commands.inputs import CaseInput, MotionRequest, case_heading
 from rpscli.commands.page_done import PageDone, ends
 from rpscli.commands.page_of_records import records_in_short
-from rpscli.commands.page_section import PAGE_SECTIONS
+from rpscli.commands.page_section import (
+    PAGE_SECTIONS,
+    SectionRequest,
+    section_words,
+    with_brought,
+)
 from rpscli.commands.shell.options import CaseRequest, Output
 from rpscli.commands.shell.terminal import announce_compilation, concluded
 from rpscli.errors import CaseError, RpsError, UsageError
@@ -193,7 +198,7 @@ def history_page(
     earlier: Earlier | None,
     out: Output,
     *,
-    extra: Sequence[str] = (),
+    extra: Mapping[str, str],
 ) -> PageDone:
     """Compute what belongs to a case, and put it in order."""
     case = given.case
@@ -206,13 +211,15 @@ def history_page(
         made = (_several if len(histories) > 1 else _single)(histories, conditions, out)
     elif extra:
         raise UsageError(
-            f"{case.source}: --{extra[0]} needs a ground motion; add --record"
+            f"{case.source}: --{next(iter(extra))} needs a ground motion; add --record"
         )
     else:
         made = _without_motion(given)
     out.terminal.warn(made.document["warnings"])
     stored = [*_compared(earlier, histories, made.document)]
-    made.results.extend(_extra_sections(given, histories, made, extra, out))
+    typed = [record for records, _ in asked for record in records]
+    wanted = with_brought(extra, typed) if histories else {}
+    made.results.extend(_extra_sections(given, histories, made, wanted, out))
 
     grounds = {each.label: each.ground for each in histories}
     sections = parts.page_sections(
@@ -243,18 +250,15 @@ def _extra_sections(
     given: CaseInput,
     histories: Sequence[run.History],
     made: _Histories,
-    extra: Sequence[str],
+    extra: Mapping[str, str],
     out: Output,
 ) -> Iterator[ReportSection]:
-    """Sections of tools that are asked for, under the worst of the motions first."""
-    if not extra:
-        return
-    worst = histories[made.worst]
-    first = sorted(histories, key=lambda each: each is not worst)
-    motions = [each.motion for each in first]
-    for name in extra:
-        made_by = PAGE_SECTIONS[name].made
-        yield made_by(given, motions, out.terminal, out.look, worst.label)
+    """Sections of tools that are asked for."""
+    motions = [each.motion for each in histories]
+    names = [each.label for each in histories]
+    for name, value in extra.items():
+        asked = (given, motions, names, made.worst, value, out.terminal, out.look)
+        yield PAGE_SECTIONS[name].made(SectionRequest(*asked))
 
 
 def _single(
@@ -340,7 +344,7 @@ def _commands(
     asked: Sequence[Asked],
     earlier: Earlier | None,
     *,
-    extra: Sequence[str],
+    extra: Mapping[str, str],
 ) -> list[list[str]]:
     """Commands that make the histories and the page again, which
     may be that of a folder.
@@ -354,9 +358,7 @@ def _commands(
         for records, motion in asked
     ]
     subjects = histories if earlier is None else [[str(earlier.folder)]]
-    pages = [
-        ["rps", "report", *each, *(f"--{name}" for name in extra)] for each in subjects
-    ]
+    pages = [["rps", "report", *each, *section_words(extra)] for each in subjects]
     without = given.case.record is None and not any(records for records, _ in asked)
     return (
         pages if without else [*(["rps", HISTORY, *each] for each in histories), *pages]

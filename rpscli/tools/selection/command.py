@@ -27,6 +27,7 @@ from rpscli.errors import LimitExceeded, UsageError
 from rpscli.report.files import CommandRun, OutputFolder, heading
 
 if TYPE_CHECKING:
+    from rpscli.case.case import Case
     from rpscli.records.ground_motion import GroundMotion
     from rpscli.records.target import Component, TargetSpectrum
     from rpscli.tools.selection.request import SelectionRequest
@@ -216,7 +217,7 @@ def _comparison(asked: SelectionOptions, terminal: Terminal) -> ComparedPeriods:
             " met"
         )
     requirements = KNOWN.get(asked.rules or spectrum.rules)
-    span, why = _range(structure, limit, spectrum, requirements)
+    span, why = range_of_periods(structure, limit, spectrum, requirements)
     if asked.periods is not None:
         span = asked.periods
         why = "as asked for"
@@ -261,14 +262,11 @@ def _request(
     asked: SelectionOptions, comparison: ComparedPeriods, sources: Sequence[str]
 ) -> SelectionRequest:
     """The set that is wanted, of the kind of spectra that options, rules or target name."""
-    from rpscli.records.measures import USUAL
     from rpscli.records.source import Source
     from rpscli.tools.selection.request import SelectionRequest
 
     target = comparison.target
-    usual: Component = (
-        USUAL if any(Source.parse(text).both for text in sources) else "component"
-    )
+    usual = usual_component(both=any(Source.parse(text).both for text in sources))
     rules = comparison.requirements
     of = asked.component or (rules.of if rules and asked.rules else None)
     return SelectionRequest(
@@ -281,6 +279,13 @@ def _request(
         asked.rules or target.rules,
         comparison.structure,
     )
+
+
+def usual_component(*, both: bool) -> Component:
+    """Kind of spectra where neither options nor the target name one."""
+    from rpscli.records.measures import USUAL
+
+    return USUAL if both else "component"
 
 
 def _motions(
@@ -346,12 +351,16 @@ def _run(chosen: Chosen) -> CommandRun:
 
 
 def _structure(request: CaseRequest, terminal: Terminal) -> tuple[Periods, str]:
+    """Periods of the case of a request, and where the second one is."""
+    return periods_of(read_case(request, terminal).case, f"--case {request.source}")
+
+
+def periods_of(case: Case, asker: str) -> tuple[Periods, str]:
     """Periods of a case, and where the second one is."""
     from rpscli.case.conditions import conditions_of
     from rpscli.model.statics import secant_period
     from rpscli.tools.selection.requirements import Periods
 
-    case = read_case(request, terminal).case
     structure = case.structure
     critical = case.structure.critical_rotation
     scales = {"rotation_ratio": critical, "max_rotation": 1.0}
@@ -367,15 +376,13 @@ def _structure(request: CaseRequest, terminal: Terminal) -> tuple[Periods, str]:
     ]
     rotation, where = min(limits)
     if rotation >= critical:
-        raise UsageError(
-            f"--case {request.source}: {where} has no secant; it must be below theta_cr"
-        )
+        raise UsageError(f"{asker}: {where} has no secant; it must be below theta_cr")
     building = structure.superstructure
     fixed = None if building is None else float(building.periods[0])
     return Periods(fixed, secant_period(structure, rotation)), where
 
 
-def _range(
+def range_of_periods(
     structure: Periods | None,
     limit: str,
     target: TargetSpectrum,

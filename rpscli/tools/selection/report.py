@@ -154,13 +154,29 @@ def selection_tables(
     """Tables of the chosen motions, how well they fit, and what the code asks."""
     names = ("name", "event", "factor", "pgv", "pgd", "misfit", "clamped")
     yield Table(picked(selection_columns(selection), *names), words=2)
-    target = selection.target
-    errors = selection.errors
-    asked = selection.requirements
-    low, high = selection.periods[[0, -1]]
-    by = f" ({target.pgv_by})" if target.pgv else ""
     refused = f"; {selection.refused} beyond the factors" * bool(selection.refused)
     how = "by exchange from many first choices, not of all sets"
+    rows = {
+        **fit_rows(selection, why),
+        "common factor, after their own": f"{selection.common:.4f}",
+        "factors at a bound": f"{selection.clamped} of {len(selection.chosen)}",
+        "chosen among": f"{selection.candidates}{refused}; "
+        + ("all sets were examined" if selection.whole else how),
+    }
+    for text, counts in left_out.items():
+        rows[f"left out by {text}"] = (
+            f"{counts['outside']}; {counts['not_known']} not known"
+        )
+    yield Table.listing(rows.items())
+    yield from rules_tables(selection)
+    yield WHY_PGV
+
+
+def fit_rows(selection: Selection, why: str) -> dict[str, str]:
+    """The target and how well the set fits it, in words; `why` the periods are these."""
+    target = selection.target
+    low, high = selection.periods[[0, -1]]
+    by = f" ({target.pgv_by})" if target.pgv else ""
     rows = {
         "target": ": ".join(filter(None, (target.name, target.parameters))),
         "edition": target.edition,
@@ -168,30 +184,26 @@ def selection_tables(
         "spectra of": COMPONENTS[selection.of]
         + ("" if target.of else "; the target names no measure of pairs"),
         "periods": f"{low:.3g} to {high:.3g} s: {why}",
-        "common factor, after their own": f"{selection.common:.4f}",
         "misfit of the mean, rms of ln(mean/target)": f"{selection.misfit:.4f}",
         "least mean/target": f"{selection.least_ratio:.3f}",
         "mean PGV, target's": f"{selection.mean_pgv:.3f}, {shown(target.pgv, 3)} m/s{by}",
         "mean PGD, target's": f"{selection.mean_pgd:.3f}, {shown(target.pgd, 3)} m",
-        "factors at a bound": f"{selection.clamped} of {len(selection.chosen)}",
-        "chosen among": f"{selection.candidates}{refused}; "
-        + ("all sets were examined" if selection.whole else how),
     }
-    if errors is not None:
+    if (errors := selection.errors) is not None:
         text = "largest errors of mean and deviation of ln Sa"
         rows[text] = f"{errors[0]:.3f}, {errors[1]:.3f}"
-    for text, counts in left_out.items():
-        rows[f"left out by {text}"] = (
-            f"{counts['outside']}; {counts['not_known']} not known"
-        )
-    yield Table.listing(rows.items())
-    if asked is not None:
-        yield f"{asked.clause}; {asked.checked}:"
-        judged = [
-            (rule.rule, rule.required, rule.found, rule.word) for rule in selection.rules
-        ]
-        yield Table.of_texts(["requirement", "required", "result", ""], judged, words=4)
-    yield WHY_PGV
+    return rows
+
+
+def rules_tables(selection: Selection) -> Iterator[Part]:
+    """Every requirement of the code beside what the set has."""
+    if (asked := selection.requirements) is None:
+        return
+    yield f"{asked.clause}; {asked.checked}:"
+    judged = [
+        (rule.rule, rule.required, rule.found, rule.word) for rule in selection.rules
+    ]
+    yield Table.of_texts(["requirement", "required", "result", ""], judged, words=4)
 
 
 def selection_files(selection: Selection, folder: Path, look: Look = USUAL) -> Files:

@@ -31,6 +31,8 @@ Array = NDArray[np.float64]
 PERIODS = 60  # periods of comparison, spread evenly over the logarithm
 FINER = 4  # times as many periods in the end, for the common factor and the verdicts
 
+TWO = "has a sigma_ln, which takes two motions at least"
+
 
 @dataclass(frozen=True, eq=False)
 class Selection:
@@ -158,6 +160,27 @@ def select(
     return replace(found, rules=_verdicts(found, request))
 
 
+def as_it_is(
+    motions: Iterable[tuple[tuple[GroundMotion, ...], float]],
+    target: TargetSpectrum,
+    request: SelectionRequest,
+) -> Selection:
+    """A set under factors that are fixed already, beside a target and the rules of its
+    code.
+    """
+    asked = None if target.deviation else RULES.get(request.rules or target.rules)
+    periods, _ = _goal(target, request, asked, FINER * PERIODS)
+    if request.count < 2 and target.deviation is not None:
+        raise RecordError(f"{target.source}: {TWO}")
+    chosen = [
+        replace(measured(of, target.damping, periods, request.of), factor=factor)
+        for of, factor in motions
+    ]
+    found = Selection(target, request.of, periods, tuple(chosen), len(chosen), 0)
+    found = replace(found, requirements=asked, whole=True)
+    return replace(found, rules=_verdicts(found, request))
+
+
 def _best_set(
     every: list[Candidate],
     fits: list[list[Candidate]],
@@ -198,9 +221,7 @@ def _require_enough(
     counts = Counter(event for _, event in known)
     room = sum(min(count, request.per_event) for count in counts.values())
     if request.count < 2 and target.deviation is not None:
-        raise RecordError(
-            f"{target.source}: has a sigma_ln, which takes two motions at least"
-        )
+        raise RecordError(f"{target.source}: {TWO}")
     if room < request.count:
         noun = "motions" if request.of == "component" else "pairs"
         raise RecordError(
