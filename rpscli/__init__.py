@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rpscli import figures, plugins
     from rpscli.analyses.demand import demand
+    from rpscli.analyses.demands_table import table
     from rpscli.analyses.floor_spectra import (
         fixed_base_floor_spectra,
         isolated_floor_spectra,
@@ -47,6 +48,7 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "analyses.demand": "demand",
+    "analyses.demands_table": "table",
     "analyses.floor_spectra": "fixed_base_floor_spectra isolated_floor_spectra",
     "analyses.largest_demands": "Demand",
     "analyses.modal": "ModalResult modal",
@@ -98,6 +100,7 @@ __all__ = [
     "profile_stiffnesses",
     "pushover",
     "response_spectrum",
+    "table",
     "time_history",
 ]
 

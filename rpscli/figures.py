@@ -32,6 +32,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
+from inspect import Parameter, signature
 from typing import Any, TypeVar, cast
 
 from rpscli.errors import UsageError, hint
@@ -67,6 +68,10 @@ def _examined(draw: Panel) -> Panel:
         if not legend and (made := axes.get_legend()) is not None:
             made.remove()
 
+    own = signature(draw)
+    legend = Parameter("legend", Parameter.KEYWORD_ONLY, default=True, annotation="bool")
+    made: Any = panel
+    made.__signature__ = own.replace(parameters=[*own.parameters.values(), legend])
     return cast("Panel", panel)
 
 

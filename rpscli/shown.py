@@ -4,9 +4,11 @@ in a line, in a notebook.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import fields
 from html import escape
+from numbers import Real
 from typing import Any, TypeVar, cast
 
 import numpy as np
@@ -76,12 +78,23 @@ class Shown(Frozen):
 
 
 def data_frame(columns: Mapping[str, Any]) -> Any:
-    """Columns as a table of pandas."""
+    """Columns as a table of pandas; of numbers that are not there NaN, not None."""
     try:
         import pandas as pd  # not everybody has it
     except ImportError:
         raise ImportError("to_dataframe needs pandas: pip install pandas") from None
-    return pd.DataFrame(columns)
+    return pd.DataFrame({name: _numbers(values) for name, values in columns.items()})
+
+
+def _numbers(values: Any) -> Any:
+    """Values as they are; numbers beside None as an array with NaN."""
+    if getattr(values, "dtype", None) != np.dtype(object):
+        return values
+    given = [value for value in values if value is not None]
+    numbers = (isinstance(each, Real) and not isinstance(each, bool) for each in given)
+    if len(given) == len(values) or not given or not all(numbers):
+        return values
+    return [math.nan if value is None else float(value) for value in values]
 
 
 def fact_text(value: Any) -> str:

@@ -61,7 +61,7 @@ OBJECTS = {
 
 OTHER = {
     "demand", "figures", "load_case", "load_components", "load_record", "load_study", "modal",
-    "plugins", "pushover", "time_history", "profile_stiffnesses", "__version__",
+    "plugins", "pushover", "time_history", "profile_stiffnesses", "table", "__version__",
 }  # fmt: skip
 """They give objects of the classes above, texts, or an array that nobody else knows."""
 

@@ -23,6 +23,7 @@ from rpscli.analyses.verification import ANSWERS, FOLDER
 from rpscli.cli import program
 from rpscli.commands.registry import OURS
 from rpscli.registry import of_tools
+from rpscli.units import KINDS
 from rpscli.user_cache import VARIABLE
 from rpscli.version import VERSION
 
@@ -360,6 +361,30 @@ def test_the_tests_run_on_the_systems_of_users():
         if line.startswith("rps "):
             checked = CliRunner().invoke(program, [shlex.split(line)[1], "--help"])
             assert checked.exit_code == 0
+
+
+def test_the_readme_says_the_versions_of_python_and_the_program():
+    """Those of the tests; the badge is that of their workflow."""
+    job = yaml.safe_load((WORKFLOW.parent / "tests.yml").read_text("utf-8"))["jobs"]
+    matrix = job["test"]["strategy"]["matrix"]
+    tested = [*matrix["python"], *(each["python"] for each in matrix["include"])]
+    minors = sorted(int(each.partition(".")[2]) for each in tested)
+    text = " ".join(README.read_text("utf-8").split())
+    assert f"Version {VERSION} (" in text
+    assert f"Python 3.{minors[0]} to 3.{minors[-1]} on Linux, Windows and macOS" in text
+    urls = tomllib.loads((docs.ROOT / "pyproject.toml").read_text("utf-8"))["project"][
+        "urls"
+    ]
+    assert f"({urls['Source']}/actions/workflows/tests.yml)" in text
+    assert f"({urls['Documentation']})" in text
+
+
+def test_the_guide_names_the_units_of_own_packages():
+    _, _, rest = docs.GUIDE.read_text("utf-8").partition(
+        "The SI units of `Quantity` are "
+    )
+    named = re.findall("`([^`]+)`", rest.partition(", and none")[0])
+    assert named == [*KINDS]
 
 
 def test_the_readme_is_short():

@@ -44,6 +44,7 @@ class Condition:
 
     Of the records of a study a `share` may exceed it, or fall below where small values
     are bad; or the `fractile` of the results must keep it; or their mean, `of` them.
+    Where demands are judged times a `factor`, the limit is the admissible value over it.
     """
 
     name: str
@@ -52,6 +53,7 @@ class Condition:
     share: float = 0.0
     fractile: float | None = None
     of: Literal["mean"] | None = None
+    factor: float = 1.0
 
     @property
     def from_below(self) -> bool:
@@ -119,7 +121,10 @@ def conditions_of(limits: LimitsSection, source: str) -> tuple[Condition, ...]:
             fractile = given.get("fractile")
             limit = given["at_least" if LIMITS[name].from_below else "at_most"]
             of = given.get("of")
-            conditions.append(Condition(name, limit, source, share, fractile, of))
+            factor = given.get("factor", 1.0)
+            if factor != 1.0:
+                limit = Written(limit / factor, getattr(limit, "text", ""))
+            conditions.append(Condition(name, limit, source, share, fractile, of, factor))
         else:
             conditions.append(Condition(name, given, source))
     return tuple(conditions)

@@ -28,14 +28,16 @@ def _bound(condition: Condition) -> str:
     limit = condition.limit
     if isinstance(limit, Written) and limit.unit:
         return limit.text
-    number, unit = large(limit, limit_unit(condition.name))
+    number, unit = large(limit * condition.factor, limit_unit(condition.name))
     short = f"{number:g}"
     same = math.isclose(float(short), number or 0.0, rel_tol=10.0**-ALL_DIGITS)
     return f"{short if same else f'{number:.{ALL_DIGITS}g}'} {unit}".strip()
 
 
 def reached_text(condition: Condition, value: float, overturned: int = 0) -> str:
-    """A demand in the unit of its limit; of so many overturned records."""
+    """A demand in the unit of its limit, and times the factor of this; of so many
+    overturned records.
+    """
     if math.isinf(
         value
     ):  # friction is asked for without bound where contact is lost as well
@@ -44,12 +46,20 @@ def reached_text(condition: Condition, value: float, overturned: int = 0) -> str
             if overturned or condition.name != "friction_ratio"
             else "unbounded"
         )
-    return measured(value, limit_unit(condition.name), condition.limit)
+    unit = limit_unit(condition.name)
+    demand = measured(value, unit, condition.limit)
+    if condition.factor == 1.0:
+        return demand
+    limit = condition.limit
+    bound = Written(limit * condition.factor, getattr(limit, "text", ""))
+    product = measured(value * condition.factor, unit, bound)
+    return f"{condition.factor:g} x {demand} = {product}"
 
 
 def bound_text(condition: Condition) -> str:
     """The limit in words."""
-    return f"at {'least' if condition.from_below else 'most'} {_bound(condition)}"
+    times = "" if condition.factor == 1.0 else f" with factor {condition.factor:g}"
+    return f"at {'least' if condition.from_below else 'most'} {_bound(condition)}{times}"
 
 
 def requirement_text(condition: Condition) -> str:

@@ -1,5 +1,6 @@
 """`rpscli.figures`: panels in somebody else's axes."""
 
+import inspect
 import math
 import re
 import subprocess
@@ -203,3 +204,13 @@ def test_nothing_to_draw_is_told():
         figures.capacity(Figure().subplots(), single)
     with pytest.raises(UsageError, match="no spectra to be drawn"):
         figures.spectra(Figure().subplots(), [])
+
+
+@pytest.mark.parametrize("name", sorted({*figures.__all__} - {"style"}))
+def test_the_signature_shows_the_legend(name):
+    """Behind what the panel itself takes."""
+    found = inspect.signature(getattr(figures, name)).parameters
+    legend = found["legend"]
+    assert legend.default is True
+    assert legend.kind is inspect.Parameter.KEYWORD_ONLY
+    assert next(iter(found)) == "axes"

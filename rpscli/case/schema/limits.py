@@ -4,7 +4,8 @@ table that may be limited.
 A limit is a number, which every record must keep; or a number that a share of the records
 may exceed, `{at_most: 0.5, share: 0.1}`; or one for a fractile, `{at_most: 0.5, fractile:
 0.84}`; or one for the mean of the records, `{at_most: 0.5, of: mean}`. Results of which
-small values are bad have `at_least` in place of `at_most`.
+small values are bad have `at_least` in place of `at_most`. A demand may be judged times a
+`factor`, as EN 1998-1, 10.3(2)P asks of displacements: `{at_most: 60 mm, factor: 1.2}`.
 """
 
 from __future__ import annotations
@@ -19,9 +20,16 @@ from rpscli.case.schema.fields import PLAIN, Quantity, Section, refuse
 from rpscli.units import KINDS
 
 Admissible = Annotated[float, Quantity(at_least=0, below=1, remedy="10 % is 0.1")]
+Magnification = Annotated[
+    float, Quantity(symbol="gamma_x", at_least=1, remedy="EN 1998-1 recommends 1.2")
+]
 Fractile = Annotated[float, Quantity(above=0, below=1, remedy="84 % is 0.84")]
 
 
+FACTOR = (
+    "the demand is judged times this factor; 1 by default. EN 1998-1, 10.3(2)P: gamma_x on"
+    " displacements of isolating units, recommended 1.2 for buildings"
+)
 WITHOUT_SOURCE = {"use_attribute_docstrings": False}
 """Option of models that no class statement defines: looking for
 their source takes long."""
@@ -63,6 +71,8 @@ def _limit_of(unit: str, zero: bool, key: str) -> Any:  # noqa: FBT001 -- whethe
         float, Quantity(unit, at_least=0) if zero else Quantity(unit, above=0)
     ]
     fields: Any = {key: (number, Field(description="admissible value"))}
+    if key == "at_most":
+        fields["factor"] = Magnification | None, Field(None, description=FACTOR)
     rule = create_model(
         f"Limit_{unit}_{key}{zero:d}",
         __base__=LimitRule,

@@ -127,17 +127,18 @@ def verdict_columns(keys: Sequence[str], verdicts: Sequence[Verdict]) -> list[Co
         asked = of.fractile, at, of.of, mean, verdict.judged_by
         limits.append((verdict.values, of.name, unit, *bounds, share, *asked))
         flags = verdict.exceeded, verdict.shown
-        results.append((verdict.overturned, *flags, verdict.shown_by, of.source))
+        results.append(
+            (verdict.overturned, *flags, verdict.shown_by, of.source, of.factor)
+        )
     heads = "limit, unit, at_most [SI], at_least [SI], admissible_share, fractile"
     found_heads = "value_at_fractile [SI], of, mean_of_maxima [SI], judged_by"
+    last_heads = "overturned_among_them, exceeded, shown, shown_by_recordings, source"
     beyond = [verdict.beyond for verdict in verdicts]
     return [
         *keyed(keys, f"{heads}, {found_heads}", limits),
         *counted_columns(beyond),
         *share_columns("beyond", beyond),
-        *columns_of(
-            "overturned_among_them, exceeded, shown, shown_by_recordings, source", results
-        ),
+        *columns_of(f"{last_heads}, factor", results),
     ]
 
 

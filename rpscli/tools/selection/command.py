@@ -28,6 +28,7 @@ from rpscli.report.files import CommandRun, OutputFolder, heading
 
 if TYPE_CHECKING:
     from rpscli.case.case import Case
+    from rpscli.case.conditions import Condition
     from rpscli.records.ground_motion import GroundMotion
     from rpscli.records.target import Component, TargetSpectrum
     from rpscli.tools.selection.request import SelectionRequest
@@ -365,7 +366,7 @@ def periods_of(case: Case, asker: str) -> tuple[Periods, str]:
     critical = case.structure.critical_rotation
     scales = {"rotation_ratio": critical, "max_rotation": 1.0}
     limits = [
-        (scales[limit.name] * limit.limit, f"the limit {limit.name} {limit.limit:g}")
+        (scales[limit.name] * limit.limit, f"the limit {limit.name} {_rotation(limit)}")
         for limit in conditions_of(case.limits, "")
         if limit.name in scales
     ] or [
@@ -380,6 +381,13 @@ def periods_of(case: Case, asker: str) -> tuple[Periods, str]:
     building = structure.superstructure
     fixed = None if building is None else float(building.periods[0])
     return Periods(fixed, secant_period(structure, rotation)), where
+
+
+def _rotation(limit: Condition) -> str:
+    """A limit in SI units, and the factor on demands that it is judged with."""
+    if limit.factor == 1.0:
+        return f"{limit.limit:g}"
+    return f"{limit.limit * limit.factor:g} over its factor {limit.factor:g}"
 
 
 def range_of_periods(
