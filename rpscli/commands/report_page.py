@@ -217,9 +217,7 @@ def history_page(
         made = _without_motion(given)
     out.terminal.warn(made.document["warnings"])
     stored = [*_compared(earlier, histories, made.document)]
-    typed = [record for records, _ in asked for record in records]
-    wanted = with_brought(extra, typed) if histories else {}
-    made.results.extend(_extra_sections(given, histories, made, wanted, out))
+    made.results.extend(_extra_sections(given, histories, made, asked, extra, out))
 
     grounds = {each.label: each.ground for each in histories}
     sections = parts.page_sections(
@@ -250,15 +248,19 @@ def _extra_sections(
     given: CaseInput,
     histories: Sequence[run.History],
     made: _Histories,
+    asked: Sequence[Asked],
     extra: Mapping[str, str],
     out: Output,
 ) -> Iterator[ReportSection]:
-    """Sections of tools that are asked for."""
+    """Sections of tools that are asked for, or that records bring."""
+    if not histories:
+        return
+    typed = [record for records, _ in asked for record in records]
     motions = [each.motion for each in histories]
     names = [each.label for each in histories]
-    for name, value in extra.items():
-        asked = (given, motions, names, made.worst, value, out.terminal, out.look)
-        yield PAGE_SECTIONS[name].made(SectionRequest(*asked))
+    for name, value in with_brought(extra, typed).items():
+        wanted = (given, motions, names, made.worst, value, out.terminal, out.look)
+        yield PAGE_SECTIONS[name].made(SectionRequest(*wanted))
 
 
 def _single(
