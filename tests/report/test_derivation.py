@@ -15,7 +15,7 @@ from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.loading import load_record
 from rpscli.report import derived
 from rpscli.report.case_page import column_sections
-from rpscli.report.column_instants import column_table
+from rpscli.report.column_table import column_table
 from rpscli.report.derived import FUNCTIONS, column_derivations, derivations
 from rpscli.report.figures.bearing import column_figure
 from rpscli.report.page import Picture
