@@ -64,6 +64,8 @@ def _examined(draw: Panel) -> Panel:
                     " help(rpscli.figures)"
                 )
         draw(axes, drawn, *arguments, **named)
+        if legend and axes.get_legend() is None:
+            _style.legend_above(axes)
         _style.fit([axes])
         if not legend and (made := axes.get_legend()) is not None:
             made.remove()

@@ -476,7 +476,7 @@ class StudyResult(Shown):
         with self.results.store:
             return REPORTS[known[name].kind].make(self.results, known[name].options)
 
-    def draw(self, name: str, target: Any = None) -> Target:
+    def draw(self, name: str, target: Any = None, *, sheet: int = 1) -> Target:
         """The figure of a report.
 
         Parameters
@@ -486,12 +486,15 @@ class StudyResult(Shown):
         target
             A figure, a part of one or axes of matplotlib to be drawn into; axes give
             their place to a part of their figure. A figure of its own by default.
+        sheet
+            Number of the sheet, where the report has several files of figures; for a
+            figure of its own.
         """
         found = self.report(name)
         if found.figure is None:
             raise UsageError(f"{name}: {'; '.join(found.notes) or 'nothing to draw'}")
         return found.drawn(
-            self.study.reports[name].options.title or self.study.title, target
+            self.study.reports[name].options.title or self.study.title, target, sheet
         )
 
     def write(

@@ -14,7 +14,7 @@ from rpscli.records.ground_motion import GroundMotion
 from rpscli.report import case_page as parts
 from rpscli.report.limits import verdicts_in_short
 from rpscli.report.page import Block, Notice, Picture, ReportSection, pictures
-from rpscli.report.study.report import labels
+from rpscli.report.study.report import SHEET
 from rpscli.report.study.statistics import (
     cut,
     note_of_directions,
@@ -25,6 +25,7 @@ from rpscli.report.study.statistics import (
 from rpscli.report.table import Table
 from rpscli.studies import Study, StudyResult
 from rpscli.sweep.evaluation import resolved
+from rpscli.sweep.names import labels
 
 FAILURES_SHOWN = 20
 
@@ -129,9 +130,11 @@ def figures(files: Mapping[str, object], study: Study) -> ReportSection:
     """All of them, with the kind and the title of the report that each is of."""
     drawn = []
     for stem, each in pictures(files.items()).items():
-        request = study.reports.get(stem)
+        of, _, sheet = stem.partition(SHEET)
+        request = study.reports.get(stem) or study.reports.get(of)
         kind, title = (request.kind, request.options.title) if request else (stem, None)
-        caption = f"{kind.replace('_', ' ').capitalize()}{f': {title}' if title else ''}."
+        caption = f"{kind.replace('_', ' ').capitalize()}{f': {title}' if title else ''}"
+        caption += f", sheet {sheet}." * bool(sheet and stem not in study.reports) or "."
         drawn.append(Picture(each, caption))
     return ReportSection("Figures", drawn)
 

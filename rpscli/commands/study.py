@@ -25,10 +25,10 @@ from rpscli.report.limits import counts_of_limits, verdicts_in_short
 from rpscli.report.study import statistics as of_study
 from rpscli.report.study.collected import Collected
 from rpscli.report.study.registry import asked
-from rpscli.report.study.report import labels
 from rpscli.report.study.statistics import summary_document, verdict_document
 from rpscli.report.table import Heading, Part, Table
 from rpscli.studies import Study, StudyInterrupted, StudyResult
+from rpscli.sweep.names import labels
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.run import Progress, Start, estimated_seconds
 from rpscli.sweep.store import Store

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 import shlex
@@ -32,6 +33,7 @@ from rpscli.sweep.evaluation import (
     solver_version,
 )
 from rpscli.sweep.motions import RecordRequest
+from rpscli.sweep.names import SYSTEM, names_of_rows
 from rpscli.sweep.systems import (
     Change,
     SystemProperties,
@@ -158,6 +160,8 @@ class StudyPoints:
             key: (0, values)
             for key, values in zip(self.plan.keys, of_systems, strict=True)
         }
+        if any(self.system_names):
+            columns[SYSTEM] = 0, self.system_names
         if len(self.members) > 1:
             columns["member"] = 3, range(len(self.members))
             columns["restitution_change"] = (
@@ -181,9 +185,20 @@ class StudyPoints:
         `points.csv` before the results.
         """
         places = [place[number] for place in self.places]
+        columns = self.identifying.items()
         return {
-            name: values[places[of]] for name, (of, values) in self.identifying.items()
+            name: values[places[of]] for name, (of, values) in columns if name != SYSTEM
         }
+
+    @cached_property
+    def system_names(self) -> list[str]:
+        """Of all systems, by the axes; those of a sample have one name."""
+        rows = itertools.product(*map(names_of_rows, self.study.axes))
+        return [", ".join(names) for names in rows for _ in range(self.samples)]
+
+    def system_name(self, number: int) -> str:
+        """The name of the system of a point."""
+        return self.system_names[number // self.points_of_system]
 
     @cached_property
     def requests(self) -> list[RecordRequest]:

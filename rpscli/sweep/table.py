@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 
 from rpscli.analyses.fixed_base import reference_shears
 from rpscli.analyses.result_quantities import STOREY_SHEARS, YIELDING, ResultQuantity
-from rpscli.case.schema.keys import unit as key_unit
 from rpscli.errors import RecordError
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import MotionComponents
@@ -34,6 +33,7 @@ from rpscli.sweep.evaluation import (
     StudyContext,
 )
 from rpscli.sweep.motions import RecordRequest
+from rpscli.sweep.names import NONE, unit_of
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.store import Store
 from rpscli.units import in_si
@@ -42,20 +42,8 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Columns = dict[str, NDArray[Any]]
 
-NONE = "none"
-"""For the value of a varied key that is taken out."""
-
 LINES_A_PIECE = 1000
 """Of `points.csv`."""
-
-
-def unit_of(name: str) -> str:
-    """SI unit of a measure or of a varied key; ``-`` for plain numbers and words."""
-    alone = name.partition("(")[0]
-    # Keys have dots, all but those that a study varies besides them.
-    if alone in MEASURES or ("." not in name and alone in MEASURES.names()):
-        return MEASURES[alone].unit
-    return key_unit(name)
 
 
 @dataclass(frozen=True, eq=False)

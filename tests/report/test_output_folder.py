@@ -20,9 +20,10 @@ from rpscli.errors import OutputError, Refused, RpsError
 from rpscli.report import table
 from rpscli.report.figures import floors, style
 from rpscli.report.files import CommandRun, Drawing, OutputFolder, json_text, write_whole
-from rpscli.report.study.fragility import LimitState
-from rpscli.report.study.report import add_notes, label, with_band
+from rpscli.report.study.fragility_options import LimitState
+from rpscli.report.study.report import add_notes, with_band
 from rpscli.report.table import Column, Table, csv_text, records
+from rpscli.sweep.names import label
 
 
 def folder_of(place, digest="a", *, force=False, **inputs):

@@ -134,6 +134,34 @@ def test_a_panel_is_drawn_with_labels_and_units(name):
     assert not parts[0].axes
 
 
+@pytest.mark.parametrize("name", PANELS)
+def test_small_axes_keep_room_for_what_they_show(name):
+    """Four axes of 56 mm by 46 mm: legends and labels leave a third of each to its panel."""
+    across, upwards = 56.0 / 25.4, 46.0 / 25.4
+    figure = Figure(figsize=(2 * across, 2 * upwards), layout="constrained")
+    every = figure.subplots(2, 2).ravel()
+    for axes in every:
+        panel(name, axes)
+    figure.draw_without_rendering()  # which warns of axes without a size
+    for axes in every:
+        shape = axes.get_position()
+        inside = axes.get_window_extent()
+        if axes.get_aspect() == "auto":
+            assert shape.width > 0.5 / 3
+            assert shape.height > 0.5 / 3
+        assert min(inside.width, inside.height) / figure.dpi > 0.3
+
+
+@pytest.mark.parametrize(
+    "name", ["storey_shears", "floor_accelerations", "storey_drifts"]
+)
+def test_profiles_say_what_their_lines_are(name):
+    axes = Figure(figsize=(4.0, 3.0), layout="constrained").subplots()
+    panel(name, axes)
+    texts = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert {"on bearings", "fixed base"} <= {*texts}
+
+
 def test_fonts_are_the_users_and_style_is_ours():
     with mpl.rc_context({"axes.labelsize": 17.0}):
         axes = Figure().subplots()

@@ -100,7 +100,7 @@ def test_columns_are_those_of_the_points(result):
     columns = result.columns
     assert {len(column) for column in columns.values()} == {24}
     assert list(columns)[:5] == [
-        "podium.bearing.curvature_ratio", "superstructure.storey_mass", "record", "scale", "outcome"
+        "podium.bearing.curvature_ratio", "superstructure.storey_mass", "system", "record", "scale"
     ]  # fmt: skip
     assert (
         result["podium.bearing.curvature_ratio"].tolist()

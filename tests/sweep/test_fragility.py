@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 
 from rpscli.report.study.fragility import (
-    FragilityOptions,
-    LimitStates,
     fragilities,
     fragility,
 )
+from rpscli.report.study.fragility_options import FragilityOptions, LimitStates
 from rpscli.report.study.scatter import (
     PulseSection,
     SpectrumOptions,

@@ -15,12 +15,13 @@ from rpscli.case.conditions import Condition
 from rpscli.errors import CaseError
 from rpscli.report.limits import verdict_text
 from rpscli.report.study.registry import not_judged
-from rpscli.report.study.report import key_columns, label
+from rpscli.report.study.report import key_columns
 from rpscli.report.study.statistics import (
     summary_columns,
     summary_document,
     verdict_columns,
 )
+from rpscli.sweep.names import label
 from rpscli.sweep.points import lay_out
 from rpscli.sweep.statistics.fractiles import clustered, fractiles, share
 from rpscli.sweep.statistics.grouping import grouping

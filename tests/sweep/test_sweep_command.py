@@ -112,6 +112,7 @@ def test_points_csv_has_the_published_columns(sweep):
         "podium.bearing.slenderness [-]",
         "podium.bearing.wedge_slenderness [-]",
         "podium.bearing.curvature_ratio [-]",
+        "system [-]",
         "record [-]",
         "scale [-]",
         "outcome [-]",
@@ -135,7 +136,7 @@ def test_a_measure_and_an_ensemble_have_columns_of_their_own(sweep):
     text = STUDY.replace("scale: [0.5, 1.0]", "scale: {measure: PGV, values: [0.3]}")
     assert sweep("study.yaml", study=text + "perturb: {members: 2}\n").exit_code == 0
     rows = csv_rows("points.csv")
-    assert list(rows[0])[3:9] == [
+    assert list(rows[0])[4:10] == [
         "member [-]", "restitution_change [-]", "PGV [m/s]", "record [-]", "scale [-]",
         "outcome [-]",
     ]  # fmt: skip

@@ -112,14 +112,15 @@ Values = tuple[Any, ...]
 
 @dataclass(frozen=True)
 class Axis:
-    """Keys that go together, a row of values for each position,
-    and where each was written.
+    """Keys that go together, a row of values for each position, where each was written,
+    and names of the rows, if they have any.
     """
 
     keys: tuple[str, ...]
     rows: tuple[Values, ...]
     places: tuple[tuple[Position, ...], ...]
     of_designs: bool = False
+    labels: tuple[str, ...] = ()
 
     @property
     def naming(self) -> tuple[str, ...]:
@@ -134,6 +135,9 @@ class Axis:
         places = self.places[key]
         return places[row] if len(places) == len(self.rows) else places[0]
 
+
+LABELS = "labels"
+"""Among the keys of an axis: names of its rows."""
 
 PLUS = "plus"
 """What is added to a linear sum."""
@@ -408,7 +412,8 @@ class StudyFile(_WITH_TOOLS, use_attribute_docstrings=True):
     analysis: Analysis = "timehistory"
     """what is done at every point"""
     vary: Axes = ()
-    """axes of a product; the keys of one axis go together"""
+    """axes of a product; the keys of one axis go together, with `labels:` as names
+    for readers, one a value"""
     linked: Linked = Field(
         {},
         description="further keys as sums of those of an axis, {key: factor, plus: constant}",

@@ -27,6 +27,7 @@ from rpscli.case.study.reports import (
     written_out,
 )
 from rpscli.case.study.schema import (
+    LABELS,
     PLUS,
     Axis,
     MeasureScale,
@@ -40,7 +41,15 @@ from rpscli.case.text.document import Document, Fault, Path, dotted, format_of, 
 from rpscli.case.text.file_kinds import FILE_KINDS
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
-from rpscli.errors import CaseError, RecordError, RpsError, is_number, listed, stem_of
+from rpscli.errors import (
+    CaseError,
+    RecordError,
+    RpsError,
+    is_number,
+    listed,
+    stem_of,
+    visible,
+)
 from rpscli.records.loading import expanded, repeated
 from rpscli.registry import Registry
 from rpscli.units import in_si
@@ -162,6 +171,7 @@ def study_of(
     whole, asked = (document, {}) if kinds is None else written_out(document, kinds)
     file = checked(format_with(asked), whole)
     reports = requests_of(whole, file)
+    document.refuse(_label_faults(file))
     sources, faults, notes = sources_of(document, folder)
     faults += [*_unequal(document, file), *key_faults(document, base_overrides, folder)]
     document.refuse([*faults, *_analysis_faults(document, file, reports, asked)])
@@ -226,18 +236,41 @@ def _unequal(document: Document, file: StudyFile) -> Iterator[Fault]:
             yield Fault(("vary", index, key), text, at_key=True)
 
 
+def _label_faults(file: StudyFile) -> Iterator[Fault]:
+    """Names of rows that are no texts, that are there twice, or without a row."""
+    for index, columns in enumerate(file.vary):
+        labels = columns.get(LABELS, ())
+        path: Path = ("vary", index, LABELS)
+        if labels and len(columns) == 1:
+            text = "labels name the values of the keys beside them; give the axis a key"
+            yield Fault(path, text, at_key=True)
+        for row, label in enumerate(labels):
+            if not isinstance(label, str) or visible(label.strip()) != label or not label:
+                text = (
+                    f"labels[{row}] = {shown(label)} must be a name, a text in one line"
+                )
+                yield Fault((*path, row), text)
+            elif label in labels[:row]:
+                text = f"labels[{row}] = {label} names another value already"
+                yield Fault((*path, row), f"{text}; give each value a name of its own")
+
+
 def _axes(document: Document, file: StudyFile) -> tuple[Axis, ...]:
     """Axes of a study whose columns are equally long."""
     axes = []
-    for index, columns in enumerate(file.vary):
+    for index, written in enumerate(file.vary):
         places = []
+        columns = dict(written)
         for key, of in columns.items():
+            if key == LABELS:
+                continue
             path: Path = ("vary", index, key)
             ranged = isinstance(document.at(path), dict)
             inside = [path] if ranged else [(*path, row) for row in range(len(of))]
             places.append(tuple(map(document.value_place, inside)))
+        labels = tuple(columns.pop(LABELS, ()))
         rows = tuple(zip(*columns.values(), strict=True))
-        axes.append(Axis(tuple(columns), rows, tuple(places)))
+        axes.append(Axis(tuple(columns), rows, tuple(places), labels=labels))
     return tuple(axes)
 
 
@@ -358,6 +391,7 @@ def varying(document: Document) -> list[tuple[str, Path]]:
         for owner, of in written
         if isinstance(of, dict)
         for key in of
+        if not (owner[0] == "vary" and key == LABELS)
     ]
 
 

@@ -49,6 +49,13 @@ WIDTH = 7.0  # width of a figure [in]: a page with its margins
 # width of the label and the numbers beside a row of panels, and of the margins [in]
 BESIDE = 0.7
 TIGHT = 4.0  # height [in]
+CROWDED = 2.4  # width or height of the place of axes [in], some 60 mm
+LESS = 0.8  # size of letters in these, as a part of small ones
+FEW_TICKS = 4
+LEGEND_SHARE = 0.3
+LABEL_SHARE = 0.55
+"""Of the height of such a place what a legend, or a label of an axis, may take."""
+PAGE = 240.0 / 25.4  # height of a page of A4 within its margins [in]
 
 STYLE: dict[str, Any] = {
     "font.family": "sans-serif",
@@ -330,10 +337,12 @@ def begin(
 
 
 def grow(figure: Figure, lines: int) -> None:
-    """Make room for further lines of text, unless the figure is somebody's."""
+    """Make room for further lines of text, up to a page, unless the figure is
+    somebody's.
+    """
     if not given(figure) and lines > 0:
         width, height = inches(figure)
-        figure.set_size_inches(width, height + LINE * lines)
+        figure.set_size_inches(width, min(height + LINE * lines, max(height, PAGE)))
 
 
 def width_of(text: str, size: float) -> float:
@@ -389,12 +398,16 @@ def fit(panels: Iterable[Axes]) -> None:
     from matplotlib.text import Text
 
     for axes in panels:
+        if crowded(axes):
+            _lessen(axes)
         # Labels are centred on panels, and each of a row gives some width to what is
         # beside it.
         across = _room(axes) * (1.0 - BESIDE / inches(axes.figure)[0])
         # Layouts of others make room for legends above, by less height.
         share = (0.6 if tight(axes.figure) else 0.75) if given(axes.figure) else 1.3
         upwards = share * axes.get_window_extent().height / axes.figure.dpi
+        if crowded(axes):
+            upwards = max(upwards, LABEL_SHARE * _place_of(axes)[1])
         # Beside its texts the children of axes are three titles.
         inside = (each for each in axes.get_children() if each not in axes.texts)
         for text in (
@@ -406,6 +419,23 @@ def fit(panels: Iterable[Axes]) -> None:
             if "\n" in (label := each.yaxis.label).get_text():
                 continue  # by hand
             label.set_text(folded(label.get_text(), upwards, float(label.get_fontsize())))
+
+
+def _lessen(axes: Axes) -> None:
+    """Smaller letters and fewer ticks."""
+    from matplotlib.ticker import MaxNLocator
+
+    size = LESS * small()
+    for text in axes.texts:
+        text.set_fontsize(min(LESS * size, float(text.get_fontsize())))
+    for each in (axes, *axes.child_axes):
+        for text in (each.xaxis.label, each.yaxis.label, each.title):
+            text.set_fontsize(min(size, float(text.get_fontsize())))
+        each.tick_params(labelsize=size, pad=2.0)
+        for axis in (each.xaxis, each.yaxis):
+            axis.labelpad = 1.0
+            if isinstance(locator := axis.get_major_locator(), MaxNLocator):
+                locator.set_params(nbins=FEW_TICKS)
 
 
 def percent(share: float) -> str:
@@ -434,13 +464,18 @@ def legend_above(axes: Axes) -> None:
     room = _room(axes)
     if not (found := entries([axes])):
         return
+    most = None
+    size = small()
+    if crowded(axes):
+        size *= LESS
+        most = max(2, int(LEGEND_SHARE * _place_of(axes)[1] / (LINE * LESS)))
     place = axes.get_subplotspec()
     engine = root(axes.figure).get_layout_engine()
     if engine is None and place is not None and place.rowspan.start:
         axes.legend(fontsize=small(), loc="best")  # nothing makes room below other axes
         return
     axes.legend(
-        **_arranged(found, room - 0.5, None),
+        **_arranged(found, room - 0.5, most, size),
         loc="lower right" if room < WIDTH else "lower left",
         bbox_to_anchor=(0.0, 1.0, 1.0, 0.1),
         borderaxespad=0.1,
@@ -449,11 +484,30 @@ def legend_above(axes: Axes) -> None:
 
 def _room(axes: Axes) -> float:
     """Width of the place of axes, with what is beside them [in]."""
+    return _place_of(axes)[0]
+
+
+def _place_of(axes: Axes) -> tuple[float, float]:
+    """Width and height of the place of axes, with what is around them [in]."""
     if (place := axes.get_subplotspec()) is None:
-        return float(axes.get_window_extent().width / axes.figure.dpi)
-    ratios: Any = place.get_gridspec().get_width_ratios()
-    share = sum(ratios[place.colspan.start : place.colspan.stop]) / sum(ratios)
-    return float(share * inches(axes.figure)[0])
+        extent = axes.get_window_extent()
+        return extent.width / axes.figure.dpi, extent.height / axes.figure.dpi
+    of = place.get_gridspec()
+    widths: Any = of.get_width_ratios()
+    heights: Any = of.get_height_ratios()
+    sides = (widths, place.colspan), (heights, place.rowspan)
+    across, upwards = (
+        sum([*ratios][span.start : span.stop]) / sum(ratios) for ratios, span in sides
+    )
+    width, height = inches(axes.figure)
+    return float(across * width), float(upwards * height)
+
+
+def crowded(axes: Axes) -> bool:
+    """True of somebody's axes that are so small that letters of usual size would leave no
+    room for what they show.
+    """
+    return given(axes.figure) and min(_place_of(axes)) < CROWDED
 
 
 def legend_below(figure: Figure, panels: Iterable[Axes]) -> None:
@@ -469,13 +523,15 @@ def legend_below(figure: Figure, panels: Iterable[Axes]) -> None:
         figure.legend(**arranged, loc="outside lower center")
 
 
-def _arranged(found: dict[str, Any], room: float, most: int | None) -> dict[str, Any]:
+def _arranged(
+    found: dict[str, Any], room: float, most: int | None, size: float = 0.0
+) -> dict[str, Any]:
     """Handles, names and columns of a legend in a room [in], whose
     last entry says what is cut.
     """
     from matplotlib.lines import Line2D
 
-    size = small()
+    size = size or small()
     beside = 4.0 * size / 72.0  # handle and gaps
     found = {folded(typeset(name), room - beside, size): of for name, of in found.items()}
     widths = [beside + width_of(name, size) for name in found]

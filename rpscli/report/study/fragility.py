@@ -7,31 +7,34 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
-from typing import Annotated, Any, NamedTuple, TypeVar
+from functools import cached_property, partial
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, StrictBool, create_model
 from pydantic_core import PydanticCustomError
 
-from rpscli.analyses.result_quantities import LIMITED
-from rpscli.case.conditions import LIMITS
-from rpscli.case.schema.case_file import Time
-from rpscli.case.schema.fields import DampingRatio, Quantity, Section, Whole
-from rpscli.case.schema.limits import described
-from rpscli.case.schema.scale_to import MeasureName
-from rpscli.case.study.reports import ReportOptions, VariedKeys
-from rpscli.case.study.schema import Option, PositiveNumber, PositiveNumbers, Seed
-from rpscli.records.measures import MEASURES, measure_label, needs_period
+from rpscli.records.measures import measure_label, needs_period
 from rpscli.report.figures import style
 from rpscli.report.study import panels
-from rpscli.report.study.report import Found, Report, keyed, labels
+from rpscli.report.study.fragility_options import (
+    FragilityOptions,
+    LimitState,
+    MeasureOptions,
+)
+from rpscli.report.study.report import Found, Report, keyed
 from rpscli.report.study.statistics import counted_columns, share_columns
 from rpscli.report.table import Column, told_once
+from rpscli.sweep.names import labels
 from rpscli.sweep.points import StudyPoints
-from rpscli.sweep.statistics.fractiles import CONFIDENCE, Share, share_of
-from rpscli.sweep.statistics.grouping import INTENSITY, Grouping, Histories, grouping
+from rpscli.sweep.statistics.fractiles import Share, share_of
+from rpscli.sweep.statistics.grouping import (
+    INTENSITY,
+    Grouping,
+    Histories,
+    grouping,
+    own_keys,
+)
 from rpscli.sweep.statistics.lognormal import Bootstrap, Lognormal, band, lognormal_fit
 from rpscli.sweep.statistics.verdicts import exceeds
 from rpscli.sweep.table import (
@@ -48,140 +51,6 @@ Item = TypeVar("Item")
 CURVE_POINTS = 101
 MOST_BINS = 10
 MOST_BANDS = 4  # curves in one panel beyond which bands would hide each other
-
-_THRESHOLDS: Any = {
-    quantity.name: (PositiveNumbers | None, Field(None, description=described(quantity)))
-    for quantity in LIMITED
-}
-
-
-class LimitStates(create_model("LimitStates", __base__=Section, **_THRESHOLDS)):  # type: ignore[misc]
-    """Limit states of a fragility; overturning exceeds every one of them."""
-
-    overturning: StrictBool = Field(
-        default=True, description="whether overturning is a limit state itself"
-    )
-
-    @property
-    def states(self) -> list[LimitState]:
-        """The limit states that a study asks for."""
-        found = [
-            LimitState(quantity.name, threshold)
-            for quantity in LIMITED
-            for threshold in getattr(self, quantity.name) or ()
-        ]
-        return [*found, *[LimitState("overturning", None)] * self.overturning]
-
-
-class LimitState(NamedTuple):
-    """Exceeded where a result is beyond a threshold; every
-    overturned point exceeds it.
-    """
-
-    result: str
-    threshold: float | None
-
-    @property
-    def label(self) -> str:
-        """The state in words."""
-        if self.threshold is None:
-            return self.result
-        sign = "<" if LIMITS[self.result].from_below else ">"
-        return f"{self.result} {sign} {self.threshold:g}"
-
-    @property
-    def title(self) -> str:
-        """The state in the words of the results, with its unit."""
-        if (known := LIMITS.get(self.result)) is None:
-            return self.label
-        return f"{self.label.replace(self.result, known.label, 1)} {known.unit}".removesuffix(
-            " -"
-        )
-
-
-class MeasureOptions(ReportOptions):
-    """Options of reports that need an intensity measure."""
-
-    measure: MeasureName | None = Field(
-        None, description="the one that the study scales to by default, else PGV"
-    )
-    period: Time | None = Field(
-        None, description="of Sa, AvgSa or FIV3; T1 of each system by default"
-    )
-    damping: DampingRatio = Field(0.05, description="of Sa, AvgSa or Housner")
-
-
-Dispersion = Annotated[
-    float, Quantity(symbol="standard deviation of ln", at_least=0, at_most=2)
-]
-
-
-class DispersionSection(Section):
-    """Uncertainties in quadrature with the scatter of records
-    (FEMA P695, section 7.3.4).
-    """
-
-    record_to_record: Dispersion | None = None
-    """in place of the beta of the fit, such as 0.4"""
-    design_requirements: Dispersion = 0.0
-    """beta_DR, 0.1 (superior) to 0.5 (poor)"""
-    test_data: Dispersion = 0.0
-    """beta_TD, 0.1 to 0.5"""
-    modelling: Dispersion = 0.0
-    """beta_MDL, 0.1 to 0.5"""
-
-    @property
-    def given(self) -> list[tuple[str, float]]:
-        """Those that the study gives."""
-        return [(key, value) for key, value in self if value]
-
-    def total(self, beta: Any) -> Any:
-        """beta_TOT from that of records."""
-        own = (
-            beta if self.record_to_record is None else self.record_to_record + 0.0 * beta
-        )
-        return np.sqrt(
-            own**2 + self.design_requirements**2 + self.test_data**2 + self.modelling**2
-        )
-
-
-class FragilityOptions(MeasureOptions):
-    """Probability of exceeding a limit state against an intensity measure."""
-
-    resamples: Annotated[int, Whole(0, 10_000)] = Field(
-        400, description="bootstrap samples of the records for the bands; 0 = none"
-    )
-    confidence: Annotated[float, Quantity(above=0, below=1)] = Field(
-        CONFIDENCE, description="probability inside the bands, for the choice of records"
-    )
-    seed: Seed = Field(1, description="of the bootstrap")
-    limits: LimitStates = Field(LimitStates(), description="limit states")
-    series: VariedKeys | None = Field(
-        None, description="varied keys, one curve for each value"
-    )
-    dispersion: DispersionSection = Field(
-        DispersionSection(), description="uncertainty beyond the records"
-    )
-    at: dict[str, Option] = Field(
-        {},
-        description="intensities by name, {MCE: 0.6 m/s}: collapse margin ratios, probabilities",
-    )
-    spectral_shape: PositiveNumber = Field(
-        1.0,
-        description="factor SSF of FEMA P695 on collapse margin ratios, made for Sa(T1)",
-    )
-
-    @property
-    def results(self) -> list[str]:
-        """Results that the limit states are about."""
-        return [limit.result for limit in self.limits.states]
-
-    def intensities(self, layout: StudyPoints) -> dict[str, float]:
-        """The intensities under `at` in SI; raises pydantic's error if one is none."""
-        scaled = layout.plan.measure
-        measure = self.measure or (scaled.measure if scaled else "PGV")
-        bounds = Quantity(MEASURES[measure].unit, symbol=measure, above=0)
-        return {name: float(bounds.read(value)) for name, value in self.at.items()}
 
 
 class Binned(NamedTuple):
@@ -226,6 +95,7 @@ class Fragilities:
     systems: Grouping
     limits: tuple[LimitState, ...]
     curves: tuple[Fragility, ...]
+    apart: int = 0  # keys of systems that tell panels apart, the first ones
 
     @property
     def notes(self) -> Iterator[str]:
@@ -245,11 +115,24 @@ class Fragilities:
         """Panel, name and place among how many: systems in panels
         of states, or the reverse.
         """
-        system = labels(self.systems.keys, curve.values)
+        keys = self.systems.keys
         limit = curve.limit.title
+        if of := self.apart:
+            panel = labels(keys[:of], curve.values[:of])
+            name = labels(keys[of:], curve.values[of:])
+            place = self.series.index(repr(curve.values[of:]))
+            title = f"{limit}, {panel}" if len(self.limits) > 1 else panel
+            return title, name, place, len(self.series)
+        system = labels(keys, curve.values)
         if len(self.systems.groups) > len(panels.COLOURS):
             return system, limit, self.limits.index(curve.limit), len(self.limits)
         return limit, system, curve.place, len(self.systems.groups)
+
+    @cached_property
+    def series(self) -> list[str]:
+        """Values that tell curves of one panel apart, as texts."""
+        values = (repr(group.values[self.apart :]) for group in self.systems.groups)
+        return [*dict.fromkeys(values)]
 
     def in_panels(
         self, items: Iterable[Item], of: Callable[[Item], Fragility]
@@ -269,6 +152,10 @@ class Fragilities:
         """A figure of panels by their titles."""
         x_label = f"{measure_name(self.intensity)} [{self.intensity.unit}]"
         row = 2 if len(groups) == 4 else 3
+        if self.apart:
+            row = panels.in_row(
+                [group.values[: self.apart] for group in self.systems.groups]
+            )
         shown = [*groups.values()]
         return panels.PanelFigure(
             [*groups], shown, draw, in_row=row, x_label=x_label, **words
@@ -289,13 +176,18 @@ def fragilities(study: StoredPoints, options: FragilityOptions) -> Fragilities:
     """Fit every limit state of every group of systems; samples and records are pooled."""
     measured = study.table.intensity(options.measure, options.period, options.damping)
     limits = tuple(options.limits.states)
-    systems = grouping(study.table, options.series, (INTENSITY,))
+    apart = options.panels
+    series = options.series
+    if apart and series is None:
+        series = own_keys(study.table.layout, (*apart, INTENSITY))
+    keys = series if series is None else (*apart, *(k for k in series if k not in apart))
+    systems = grouping(study.table, keys, (INTENSITY,))
     curves = tuple(
         _fragility(study.table, measured, options, (place, group), limit)
         for limit in limits
         for place, group in enumerate(systems.groups)
     )
-    return Fragilities(measured, options.confidence, systems, limits, curves)
+    return Fragilities(measured, options.confidence, systems, limits, curves, len(apart))
 
 
 def _fragility(
@@ -497,7 +389,7 @@ def fragility_figure(report: Fragilities) -> Callable[[str], style.Draw]:
     shares, shades the bands.
     """
     drawn = [curve for curve in report.curves if curve.fit.fitted]
-    groups = report.in_panels(drawn, lambda curve: curve)
+    groups = report.in_panels(report.curves, lambda curve: curve)
     missing = sum(not curve.fit.fitted for curve in report.curves)
     penalised = any(curve.fit.method == "penalised" for curve in report.curves)
     note = panels.remarks(
@@ -521,7 +413,12 @@ def _draw_curves(axes: style.Axes, curves: list[Fragility], report: Fragilities)
     """Curves of one panel, with what they go through and how sure they are."""
     from scipy.special import ndtr
 
-    for curve in curves:
+    known = [curve for curve in curves if curve.fit.fitted]
+    axes.set_ylim(-0.02, 1.02)
+    if not known:
+        panels.nothing(axes, "no curve")
+        return
+    for curve in known:
         fit = curve.fit
         grid = curve.grid
         seen = curve.observed
@@ -531,21 +428,21 @@ def _draw_curves(axes: style.Axes, curves: list[Fragility], report: Fragilities)
         axes.plot(
             grid, fit.curve, dashes, lw=1.4, markevery=[], label=name or None, **look
         )
-        if len(curves) <= MOST_BANDS:
+        if len(known) <= MOST_BANDS:
             axes.fill_between(grid, *fit.band, color=look["color"], alpha=0.15, lw=0)
         axes.plot(seen.intensity, seen.share, ls="", alpha=0.8, **look)
         if curve.total != fit.beta:
             total = ndtr(np.log(grid / fit.median) / curve.total)
             axes.plot(grid, total, ":", color=look["color"], lw=1.0)
-    axes.set_ylim(-0.02, 1.02)
-    axes.set_xlim(0.0, max(curve.grid[-1] for curve in curves))
-    last = max(curve.largest for curve in curves)
+    axes.set_xlim(0.0, max(curve.grid[-1] for curve in known))
+    last = max(curve.largest for curve in known)
     shade_not_computed(axes, last, axes.get_xlim()[1])
 
 
 def _remark_on_bands(report: Fragilities, groups: Iterable[list[Fragility]]) -> str:
     """The bands of the figure in words, or the reason why there are none."""
-    banded = [curve for group in groups if len(group) <= MOST_BANDS for curve in group]
+    fitted = ([curve for curve in group if curve.fit.fitted] for group in groups)
+    banded = [curve for group in fitted if len(group) <= MOST_BANDS for curve in group]
     if not banded:
         return f"bands of more than {MOST_BANDS} curves: see CSV"
     if not any(np.isfinite(curve.fit.band[0]).any() for curve in banded):

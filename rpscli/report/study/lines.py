@@ -26,15 +26,12 @@ from rpscli.report.study.report import (
     Found,
     Report,
     Statistic,
-    cell_of,
     keyed,
-    labels,
-    plain,
     reached,
-    symbol,
 )
 from rpscli.report.table import Column
 from rpscli.sweep.evaluation import KNOWN, SCALARS, quantity
+from rpscli.sweep.names import cell_of, labels, plain, symbol, tick_of, unit_of
 from rpscli.sweep.statistics.fractiles import THREE, demand, fractiles
 from rpscli.sweep.statistics.grouping import (
     INTENSITY,
@@ -46,7 +43,7 @@ from rpscli.sweep.statistics.grouping import (
     shown_keys,
     statistic_words,
 )
-from rpscli.sweep.table import Array, StoredPoints, unit_of
+from rpscli.sweep.table import Array, StoredPoints
 
 LEGEND = {"frequency_parameter": "model", "frequency_parameter_rigid": "rigid estimate"}
 """Names of results that are compared in one figure, where the last word says too much."""
@@ -107,6 +104,7 @@ class Chart(NamedTuple):
     panels: list[Panel]
     series: tuple[str, ...]  # keys that tell lines of a result apart
     statistic: str
+    x_key: str
 
     @property
     def results(self) -> tuple[str, ...]:
@@ -163,7 +161,8 @@ def _chart(
         for c, o in zip(line.counted, line.overturned, strict=True)
     )
     statistic = "" if single else statistic_words(options.statistic)
-    return Chart(options, shown, shown_keys(layout, series), statistic)
+    (x_key,) = shown_keys(layout, (options.x,))
+    return Chart(options, shown, shown_keys(layout, series), statistic, x_key)
 
 
 def _columns(panel_keys: Sequence[str], chart: Chart, x_name: str) -> list[Column]:
@@ -276,7 +275,7 @@ def _draw(axes: style.Axes, panel: Panel, chart: Chart) -> None:
             isinstance(value, int | float) for value in line.x
         ):  # each word has a place
             x = range(len(line.x))
-            axes.set_xticks(x, [plain(value) for value in line.x])
+            axes.set_xticks(x, [tick_of(chart.x_key, value) for value in line.x])
         parts = (labels(chart.series, line.values), names[line.result])
         name = ", ".join(filter(None, parts)) or None
         shade = panels.colour(place, count)
@@ -377,6 +376,9 @@ class IdaOptions(ReportOptions):
     panels: VariedKeys | None = Field(
         None, description="varied keys, one panel for each value"
     )
+    series: VariedKeys = Field(
+        (), description="varied keys, median and fractile of each value in one panel"
+    )
 
 
 class Ida(NamedTuple):
@@ -396,7 +398,11 @@ class Ida(NamedTuple):
 def ida(study: StoredPoints, options: IdaOptions) -> Found:
     """Curves and fractiles of each system."""
     table = study.table
-    found = grouping(table, options.panels, (INTENSITY,))
+    apart = options.panels
+    if apart is None:
+        apart = own_keys(table.layout, (*options.series, INTENSITY))
+    series = [key for key in options.series if key not in apart]
+    found = grouping(table, (*apart, *series), (INTENSITY,))
     demands = demand(table, table.columns[options.result])
     shown = [_ida_of(group, demands) for group in found.groups]
     (name,) = shown_keys(table.layout, (INTENSITY,))
@@ -412,7 +418,7 @@ def ida(study: StoredPoints, options: IdaOptions) -> Found:
         )
     ]
     level = panels.scale_of(name, unit_of(name))
-    figure = _ida_figure(found, shown, of, level)
+    figure = _ida_figure(found, len(apart), shown, of, level)
     return Found({"": keyed(found.keys, heads, rows)}, figure, found.notes)
 
 
@@ -424,24 +430,47 @@ def _ida_of(group: Histories, demands: Array) -> Ida:
     return Ida(group.values, levels, np.array([*map(_height, levels)]), curves, spread)
 
 
+class IdaPanel(NamedTuple):
+    """Groups of one panel by what tells them apart in it; alone, all of their curves."""
+
+    values: tuple[object, ...]
+    groups: dict[str, Ida]  # by their names in the legend
+
+
 def _ida_figure(
-    found: Grouping, shown: Sequence[Ida], of: ResultQuantity, level: panels.Scale
+    found: Grouping,
+    apart: int,
+    shown: Sequence[Ida],
+    of: ResultQuantity,
+    level: panels.Scale,
 ) -> Callable[[str], style.Draw]:
-    """One panel a group, as far to the right as what stood."""
+    """Groups that differ in the first keys have panels, as far to the right as what
+    stood.
+    """
+    by_panel: dict[str, IdaPanel] = {}
+    for each in shown:
+        values = each.values[:apart]
+        panel = by_panel.setdefault(repr(values), IdaPanel(values, {}))
+        panel.groups[labels(found.keys[apart:], each.values[apart:])] = each
+    names = [*dict.fromkeys(n for panel in by_panel.values() for n in panel.groups)]
+    several = len(names) > 1
     finite = np.concatenate([panel.curves[np.isfinite(panel.curves)] for panel in shown])
     edge = 1.15 * float(finite.max()) if len(finite) else 1.15
     top = 1.04 * max(float(panel.heights.max()) for panel in shown)
     numbers = sorted({str(len(panel.curves)) for panel in shown})
+    draw = _draw_medians if several else _draw_ida
     return panels.in_panels(
-        found.keys,
-        shown,
-        partial(_draw_ida, edge=edge),
+        found.keys[:apart],
+        [*by_panel.values()],
+        partial(draw, edge=edge, names=names),
         x_label=panels.scale_of_result(of),
         y_label=level,
         limits=lambda axes: axes.set(xlim=(0.0, 0.97 * edge), ylim=(0.0, top)),
         note=panels.noted(
             found,
             f"fractiles of {listed(numbers)} curves",
+            "solid: medians, dashed: 84 % fractiles" * several,
+            panels.shaded(len(names)),
             "level to the right: overturned at the next intensity"
             if found.overturned
             else "",
@@ -450,8 +479,26 @@ def _ida_figure(
     )
 
 
-def _draw_ida(axes: style.Axes, panel: Ida, edge: float) -> None:
+def _draw_medians(
+    axes: style.Axes, shown: IdaPanel, edge: float, names: Sequence[str]
+) -> None:
+    """Median and 84 % fractile of several groups."""
+    for name, panel in shown.groups.items():
+        levels = np.concatenate([[0.0], panel.heights])
+        shade = panels.colour(names.index(name), len(names))
+        for fractile, dashes, width in zip(
+            panel.fractiles[1:], ("-", "--"), (1.8, 1.0), strict=True
+        ):
+            line = _run_out(fractile, levels, edge)
+            label = name if dashes == "-" else None
+            axes.plot(*line, color=shade, ls=dashes, lw=width, label=label)
+
+
+def _draw_ida(
+    axes: style.Axes, shown: IdaPanel, edge: float, names: Sequence[str]
+) -> None:
     """Single curves, and fractiles over them."""
+    panel = shown.groups[names[0]]
     levels = np.concatenate([[0.0], panel.heights])
     # Evenly through all of them: more would only blacken the panel.
     for curve in panel.curves[:: max(1, len(panel.curves) // MOST_CURVES)]:

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeVar
 
 from rpscli.analyses.result_quantities import ResultQuantity
 from rpscli.report.figures import style
 from rpscli.report.figures.look import FONT_SIZE, SMALL
-from rpscli.report.study.report import labels
 from rpscli.report.table import large
+from rpscli.sweep.names import labels
 from rpscli.sweep.statistics.grouping import Grouping
 
 if TYPE_CHECKING:
@@ -29,6 +29,7 @@ COLOURS = (
 )  # fmt: skip
 MARKERS = "osD^vP*X"
 MOST_TICKS = 5  # on each axis of a panel: ticks take most of the time of drawing
+AROUND = 1.0  # of a figure of ours, heading and labels around its panels [in]
 NO_PANEL = 1.3
 LEAST_HEIGHT = 0.5
 """Of a given figure what is no panel, and of each panel without its title [in]."""
@@ -75,10 +76,22 @@ def in_panels(
     """Panels that have `values` of keys; the last key's stand side by
     side if they fill a table.
     """
-    across = len(dict.fromkeys(str(panel.values[-1]) for panel in panels)) if keys else 1
-    fills = 1 < across <= 5 and len(panels) % across == 0
     names = [labels(keys, panel.values) for panel in panels]
-    return PanelFigure(names, panels, draw, in_row=across if fills else 4, **words)
+    row = in_row([panel.values for panel in panels])
+    return PanelFigure(names, panels, draw, in_row=row, **words)
+
+
+def in_row(values: Sequence[Sequence[object]]) -> int:
+    """So many panels side by side that the last key's values fill a table, else four."""
+    every = dict.fromkeys(map(repr, values))
+    across = len(dict.fromkeys(repr(each[-1:]) for each in values))
+    return across if 1 < across <= 5 and len(every) % across == 0 else 4
+
+
+def nothing(axes: style.Axes, text: str) -> None:
+    """A panel in its place with nothing to draw but a remark."""
+    look: dict[str, Any] = {"ha": "center", "va": "center", "color": style.GREY}
+    axes.text(0.5, 0.5, text, transform=axes.transAxes, fontsize=style.small(), **look)
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,13 +109,35 @@ class PanelFigure:
     share: Literal["both", "x"] = "both"
     limits: Callable[[style.Axes], object] | None = None
     note: str = ""
+    part: str = ""  # of several sheets
+    columns: int = 0  # panels side by side, as in the other sheets
 
     def __call__(self, title: str) -> style.Draw:
         """The figure under a title."""
         return partial(self._fill, title)
 
+    def sheets(self, room: float) -> Sequence[PanelFigure]:
+        """The figure in parts of at most a page, where figures are so wide [in]."""
+        columns = self._columns(room)
+        shown = min(len(self.panels), MOST_PANELS)
+        parts = in_sheets(shown, columns, _each(columns, room), AROUND)
+        if len(parts) == 1:
+            return [self]
+        left = remarks(first_of(shown, len(self.panels), "panels"), self.note)
+        return [
+            replace(
+                self,
+                names=self.names[part],
+                panels=self.panels[part],
+                note=left,
+                part=f"sheet {number} of {len(parts)}",
+                columns=columns,
+            )
+            for number, part in enumerate(parts, start=1)
+        ]
+
     def _fill(self, title: str, figure: style.Figure) -> None:
-        columns = self._columns(figure)
+        columns = self._columns(style.room(figure))
         room = (style.room(figure) - style.BESIDE) / columns
         titles = [
             style.folded(style.typeset(name), room, SMALL * FONT_SIZE)
@@ -112,7 +147,7 @@ class PanelFigure:
         shown, cut = first(figure, self.panels, columns, MOST_PANELS, lines)
         rows = max(1, math.ceil(len(shown) / columns))
         # A heading may be cut at its end: what is left out comes first.
-        words = (title, remarks(cut, self.note))
+        words = (title, remarks(self.part, cut, self.note))
         style.begin(figure, words, *self._size(figure, rows, columns))
         grid = figure.subplots(
             rows, columns, squeeze=False, sharex=True, sharey=self.share == "both"
@@ -136,17 +171,21 @@ class PanelFigure:
         """Panels side by side where there is room."""
         return max(1, min(self.in_row, len(self.panels)))
 
-    def _columns(self, figure: style.Figure) -> int:
-        """Panels side by side in a figure; three would leave a hole beside two."""
-        if style.room(figure) >= style.WIDTH:
+    def _columns(self, room: float) -> int:
+        """Panels side by side in a figure so wide; three would leave a hole beside two."""
+        if self.columns:
+            return self.columns
+        if room >= style.WIDTH:
             return self._widest
         return min(1 if len(self.panels) == 3 else 2, self._widest)
 
     def _size(self, figure: style.Figure, rows: int, columns: int) -> tuple[float, float]:
         """Height and width of a figure of ours [in]."""
-        each = 2.6 if columns < 3 and style.room(figure) >= style.WIDTH else 2.1
-        height = 3.8 if rows == 1 and columns == 1 else 1.0 + each * rows
-        return height, style.WIDTH if self._widest > 1 else 0.72 * style.WIDTH
+        height = AROUND + _each(columns, style.room(figure)) * rows
+        if rows == 1 and columns == 1:
+            height = 3.8
+        several = max(self._widest, self.columns) > 1
+        return height, style.WIDTH if several else 0.72 * style.WIDTH
 
     def _ticks(self, axes: style.Axes) -> None:
         """Numbers at the axes in the units of their labels."""
@@ -178,6 +217,26 @@ class PanelFigure:
         figure.supylabel(folded, fontsize=letters, multialignment="center")
 
 
+def _each(columns: int, room: float) -> float:
+    """Height of a panel of ours, with its title [in]."""
+    return 2.6 if columns < 3 and room >= style.WIDTH else 2.1
+
+
+def in_sheets(count: int, columns: int, height: float, around: float) -> list[slice]:
+    """So many panels, or rows, in parts that are not higher than a page; all parts are
+    about as long. A row is so high, and around all there is more [in].
+    """
+    rows = math.ceil(count / columns)
+    sheets = math.ceil(rows / max(1, int((style.PAGE - around) / height)))
+    each = math.ceil(rows / max(1, sheets)) * columns
+    return [slice(n, min(n + each, count)) for n in range(0, count, max(each, 1))]
+
+
+def first_of(shown: int, count: int, what: str) -> str:
+    """A remark where not all are shown."""
+    return f"the first {shown} of {count} {what}" * (shown < count)
+
+
 def first(
     figure: style.Figure,
     panels: Sequence[Panel],
@@ -190,7 +249,7 @@ def first(
         each = LEAST_HEIGHT + style.LINE * title_lines
         most = columns * max(1, int((style.inches(figure)[1] - NO_PANEL) / each))
     shown = panels[:most]
-    return shown, f"the first {most} of {len(panels)} panels" * (len(panels) > most)
+    return shown, first_of(most, len(panels), "panels")
 
 
 def break_if_narrow(axes: style.Axes) -> str:

@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
-import json
 import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from rpscli.analyses.result_quantities import DEMANDS
 from rpscli.case.schema.fields import Quantity
 from rpscli.case.study.reports import Options, ReportKind
+from rpscli.case.study.schema import Axis
 from rpscli.report.figures.look import USUAL, Look
-from rpscli.report.figures.style import Draw, Target, drawn, drawn_into, figure_files
+from rpscli.report.figures.style import (
+    WIDTH,
+    Draw,
+    Target,
+    drawn,
+    drawn_into,
+    figure_files,
+    require,
+)
 from rpscli.report.files import Drawing
 from rpscli.report.table import (
     Column,
@@ -26,9 +33,18 @@ from rpscli.report.table import (
     records,
     shown,
 )
+from rpscli.sweep.names import (
+    NamedKey,
+    Values,
+    cell_of,
+    plain,
+    symbol,
+    unit_of,
+    with_unit,
+)
 from rpscli.sweep.points import StudyPoints
-from rpscli.sweep.table import NONE, StoredPoints, unit_of
-from rpscli.units import Written, as_written, in_si
+from rpscli.sweep.table import StoredPoints
+from rpscli.units import Written
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -47,6 +63,9 @@ StatisticOrShare = Annotated[
     Quantity(symbol="a fractile", above=0, below=1, words=(*_WORDS, "overturned")),
 ]
 """A statistic of several histories, or the share that overturned."""
+
+SHEET = "_sheet_"
+"""Before the number, in names of files of a figure from its second sheet on."""
 
 ENDS = ("_low", "_high")  # of names of columns that hold the ends of a band
 
@@ -96,10 +115,18 @@ class Found:
         }
         return {**rows, "remark": self.remark} if rows else {}
 
-    def drawn(self, title: str, target: Target | Axes | None = None) -> Target:
-        """Its figure, which is no file yet; drawn into the target if there is one."""
-        draw = partial(self._draw, title)
-        return drawn(draw) if target is None else drawn_into(target, draw)
+    def drawn(
+        self, title: str, target: Target | Axes | None = None, sheet: int = 1
+    ) -> Target:
+        """A sheet of its figure, which is no file yet; all of it drawn into the target if
+        there is one, or what has room there.
+        """
+        assert self.figure is not None, "asked before"
+        if target is not None:
+            return drawn_into(target, self.figure(title))
+        sheets = self.sheets()
+        require("sheets", sheet, range(1, len(sheets) + 1))
+        return drawn(sheets[sheet - 1](title))
 
     def files(
         self, stem: str, title: str, look: Look = USUAL
@@ -107,12 +134,19 @@ class Found:
         """Names and contents of its files."""
         for suffix, columns in self.tables.items():
             yield f"{stem}{suffix}.csv", csv_text(columns)
-        if self.figure is not None:
-            yield from figure_files({stem: partial(self._draw, title)}, look).items()
+        draws = {
+            f"{stem}{SHEET}{number}" if number > 1 else stem: sheet(title)
+            for number, sheet in enumerate(self.sheets(look), start=1)
+        }
+        yield from figure_files(draws, look).items()
 
-    def _draw(self, title: str, figure: Target) -> None:
-        assert self.figure is not None, "asked before"
-        self.figure(title)(figure)
+    def sheets(self, look: Look = USUAL) -> Sequence[Callable[[str], Draw]]:
+        """The figure in parts of at most a page, if it knows how; none without one."""
+        if self.figure is None:
+            return []
+        if (parts := getattr(self.figure, "sheets", None)) is None:
+            return [self.figure]
+        return list(parts(look.width(WIDTH)))
 
 
 def with_band(value: float, low: float, high: float) -> str:
@@ -134,10 +168,16 @@ def _readable(columns: Sequence[Column], labels: Mapping[str, str]) -> Table:
     heads = []
     cells = []
     words = 0
+    named = named_cells(columns)
     for column in columns:
         name = column.name
         unit = column.unit
         values = known[column.name]
+        if name in named:
+            heads += [symbol(name)] * bool(named[name])
+            cells += [named[name]] * bool(named[name])
+            words = len(heads)
+            continue
         if name.endswith(ENDS) or (labels and name not in labels):
             continue
         own = labels.get(name) or symbol(name).replace("_", " ")
@@ -193,84 +233,6 @@ def add_notes(notes: list[str], name: str, found: Iterable[str]) -> None:
     notes += [f"{name}: {note}" for note in found if note not in told]
 
 
-SYMBOLS = {
-    "superstructure.storeys": "n",
-    "superstructure.period": "T₁",
-    "superstructure.damping.ratio": "ξ",
-    "superstructure.yield.ratio": "F₁/V_st",
-    "superstructure.yield.hardening": "h",
-    "podium.bearing.semi_diagonal": "R",
-    "podium.bearing.slenderness": "tan α",
-    "podium.bearing.wedge_slenderness": "tan α′",
-    "podium.bearing.curvature_ratio": "ρ",
-    "podium.cap_beam_mass_ratio": "γ",
-    "podium.superstructure_mass_ratio": "η",
-}
-"""The paper's letters; other keys go by their last word. Plain text: matplotlib takes ten
-times as long over formulae, and there is a title on every panel."""
-
-CURVATURES = {"critical": "critical ρ", 0: "flat ends"}
-
-Values = Sequence[object]
-
-
-def symbol(key: str) -> str:
-    """A key's letter or its last word."""
-    return SYMBOLS.get(key, key.rpartition(".")[2])
-
-
-def label(key: str, value: object) -> str:
-    """A key with its value and unit."""
-    if key.endswith("curvature_ratio") and not isinstance(value, list | dict | bool):
-        known = CURVATURES.get(value) if isinstance(value, str | int | float) else None
-        if known:
-            return known
-    if key == "podium.devices":
-        return plain(value) if value else "no devices"
-    if key == "title":
-        return plain(value)
-    if key == "floor":
-        return f"floor {plain(value)}"
-    return f"{symbol(key)} = {_with_unit(key, value)}"
-
-
-def labels(keys: Iterable[str], values: Values) -> str:
-    """Several keys with their values; empty without any."""
-    return ", ".join(label(key, value) for key, value in zip(keys, values, strict=True))
-
-
-def plain(value: object) -> str:
-    """A value as text: numbers short, devices and contacts by their
-    kinds, lists as written.
-    """
-    if isinstance(value, float):
-        return as_written(value, "-")
-    if value is None:
-        return NONE
-    if isinstance(value, list) and all(
-        isinstance(item, dict) and "kind" in item for item in value
-    ):
-        return ", ".join(_device(item) for item in value) or NONE
-    if isinstance(value, dict) and "kind" in value:
-        return _device(value)
-    return value if isinstance(value, str) else json.dumps(value)
-
-
-def _device(device: dict[str, object]) -> str:
-    """The kind of a device or a contact and the first of its values, with its unit."""
-    values = [
-        _with_unit(f"podium.devices.{key}", value)
-        for key, value in device.items()
-        if key != "kind"
-    ]
-    return " ".join([str(device["kind"]).replace("_", " "), *values[:1]])
-
-
-def _with_unit(key: str, value: object) -> str:
-    bare = isinstance(value, int | float) and not isinstance(value, Written)
-    return f"{plain(value)} {unit_of(key) if bare else '-'}".removesuffix(" -")
-
-
 def key_columns(keys: Sequence[str], rows: Sequence[Values]) -> list[Column]:
     """One column a key, from its values in each row."""
     return [
@@ -279,17 +241,29 @@ def key_columns(keys: Sequence[str], rows: Sequence[Values]) -> list[Column]:
     ]
 
 
-def cell_of(key: str, value: object) -> object:
-    """A value of a key in SI units; the word for one that is taken out."""
-    return NONE if value is None else in_si(value, unit_of(key))
-
-
 def key_cells(column: Column, name: str) -> tuple[str, list[str]]:
     """Head and cells of the column of a key: values as their file has them."""
     values = list(column.values)
     if any(isinstance(value, Written) for value in values):
-        return name, [_with_unit(column.name, value) for value in values]
+        return name, [with_unit(column.name, value) for value in values]
     return f"{name} {column.unit}".removesuffix(" -"), [plain(value) for value in values]
+
+
+def named_cells(columns: Sequence[Column]) -> dict[str, list[str]]:
+    """Cells of keys whose rows have names: these in the first column of each axis, and
+    nothing in its others, which readers need not see.
+    """
+    keys = [column.name for column in columns]
+    rows = list(zip(*(column.values for column in columns), strict=True))
+    found: dict[str, list[str]] = {}
+    told: list[Axis] = []
+    for key in (key for key in keys if isinstance(key, NamedKey)):
+        names = [key.name_of(dict(zip(keys, row, strict=True))) for row in rows]
+        known = [name for name in names if name is not None]
+        if len(known) == len(rows):
+            found[key] = [] if key.axis in told else known
+            told.append(key.axis)
+    return found
 
 
 def keyed(keys: Sequence[str], heads: str, rows: Iterable[Sequence[Any]]) -> list[Column]:

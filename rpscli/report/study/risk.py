@@ -21,6 +21,7 @@ from rpscli.report.figures import style
 from rpscli.report.study import fragility as fragile
 from rpscli.report.study import panels
 from rpscli.report.study.fragility import MOST_BANDS, Fragilities, Fragility
+from rpscli.report.study.fragility_options import FragilityOptions
 from rpscli.report.study.report import Found, Report, keyed, with_band
 from rpscli.report.table import Column
 from rpscli.sweep.points import StudyPoints
@@ -36,7 +37,7 @@ CLEARLY = (
 )
 
 
-class RiskOptions(fragile.FragilityOptions):
+class RiskOptions(FragilityOptions):
     """Annual rates of limit states, from their fragilities and a hazard curve."""
 
     hazard: HazardSection | None = Field(
@@ -126,7 +127,7 @@ def risk(study: StoredPoints, options: RiskOptions) -> Found:
     readers = {of.name: of.label for of in columns if of.label}
     return Found(
         tables,
-        risk_figure(found, known, options.years) if known else None,
+        risk_figure(found, risks, options.years) if known else None,
         [*_report_notes(found, known, section.component), *found.notes],
         shown={"": dict.fromkeys(keys, "") | readers}
         | ({"_at": {}} if options.at else {}),
@@ -314,9 +315,10 @@ def risk_figure(
 ) -> Callable[[str], style.Draw]:
     """One panel a limit state: what share of its rate comes from which intensities."""
     groups = found.in_panels(risks, lambda each: each.fragility)
+    known = [each for each in risks if each.fragility.fit.fitted]
     rows = min(max(map(len, groups.values())), MOST_BANDS)
-    (low, high) = _shown(risks)
-    last = float(risks[0].edges[-2])
+    (low, high) = _shown(known)
+    last = float(known[0].edges[-2])
 
     def limit_axes(axes: style.Axes) -> None:
         # Of all panels at the end: ticks of logarithms are of another kind.
@@ -346,6 +348,10 @@ def _draw_shares(
 ) -> None:
     """Shares of the rates of one panel, between the intensities that are shown."""
     low, high = shown
+    panel = [each for each in panel if each.fragility.fit.fitted]
+    if not panel:
+        panels.nothing(axes, "no rate")
+        return
     for row, each in enumerate(panel):
         _, name, place, count = found.placed(each.fragility)
         shade = panels.colour(place, count)

@@ -15,7 +15,9 @@ from rpscli.errors import listed
 from rpscli.model.podium import Array
 from rpscli.report.figures import style
 from rpscli.report.study import panels
-from rpscli.report.study.report import Found, Report, keyed, label, without_uplift
+from rpscli.report.study.report import Found, Report, keyed, without_uplift
+from rpscli.sweep.names import labels, with_names
+from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.grouping import (
     INTENSITY,
     Grouping,
@@ -82,7 +84,7 @@ def rotation(study: StoredPoints, options: RotationOptions) -> Found:
     heads = f"outcome, rotation_over_alpha, reference {compared.key}, reference_outcome"
     return Found(
         {"": keyed(names, f"{heads}, reference_rotation_over_alpha", rows)},
-        _figure(compared),
+        _figure(study.table.layout, compared),
     )
 
 
@@ -134,11 +136,11 @@ def _rows(study: StoredPoints, compared: _Compared) -> tuple[list[str], list[Any
     return names, rows
 
 
-def _figure(compared: _Compared) -> Any:
+def _figure(layout: StudyPoints, compared: _Compared) -> Any:
     """The figure: markers of pairs, open ones at the frame where one overturned."""
     ends = compared.ends
     count = compared.others
-    key = compared.key
+    key = with_names(layout.study.axes, compared.key)
 
     def draw(axes: style.Axes, group: Histories) -> None:
         for place, each in enumerate(compared.shown[group]):
@@ -146,7 +148,7 @@ def _figure(compared: _Compared) -> Any:
             stood = np.isfinite(x) & np.isfinite(y)
             look = panels.look(place, count) | {"ls": "", "ms": 3.2}
             axes.plot(
-                x[stood], y[stood], **look, alpha=0.75, label=label(key, each.value)
+                x[stood], y[stood], **look, alpha=0.75, label=labels([key], [each.value])
             )
             at_frame = [
                 np.minimum(of[~stood], end) for of, end in zip(both, ends, strict=True)
@@ -163,7 +165,7 @@ def _figure(compared: _Compared) -> Any:
         compared.found.keys,
         compared.found.groups,
         draw,
-        x_label=f"{name}, {label(key, compared.reference)}",
+        x_label=f"{name}, {labels([key], [compared.reference])}",
         y_label=f"{name}, the others",
         limits=lambda axes: axes.set(xlim=(0.0, ends[0]), ylim=(0.0, ends[1])),
         note=panels.noted(

@@ -27,20 +27,19 @@ from rpscli.report.figures import style
 from rpscli.report.study import panels
 from rpscli.report.study.bilinear import FEWEST, Bilinear, bilinear_fit
 from rpscli.report.study.fragility import (
-    MeasureOptions,
     measure_name,
     measure_without_period,
 )
+from rpscli.report.study.fragility_options import MeasureOptions
 from rpscli.report.study.report import (
     Found,
     Report,
     keyed,
-    labels,
-    symbol,
     without_uplift,
 )
 from rpscli.sweep.evaluation import SCALARS
 from rpscli.sweep.motions import RecordRequest
+from rpscli.sweep.names import labels, symbol, unit_of
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.grouping import (
     INTENSITY,
@@ -55,7 +54,6 @@ from rpscli.sweep.table import (
     StoredPoints,
     groups,
     leading_keys,
-    unit_of,
 )
 from rpscli.units import in_si
 

@@ -22,12 +22,12 @@ from rpscli.report.study.report import (
     key_cells,
     key_columns,
     keyed,
-    labels,
+    named_cells,
     reached,
-    symbol,
 )
 from rpscli.report.table import Column, Part, Table, columns_of, headed, large, standing
 from rpscli.report.timehistory import direction_note, overturned_text, restitution_text
+from rpscli.sweep.names import SYSTEM, labels, symbol
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.fractiles import Share, Spread
 from rpscli.sweep.statistics.summary import Summary
@@ -69,6 +69,8 @@ def summary_columns(summary: Summary) -> list[Column]:
     rows = summary.rows
     overturned = [row.overturned for row in summary.rows]
     columns = key_columns(summary.keys, [row.values for row in rows])
+    if any(summary.systems):
+        columns.append(Column(SYSTEM, "-", summary.systems))
     columns += counted_columns(overturned)
     columns.append(Column("failed", "-", [row.failed for row in rows]))
     columns += share_columns("overturned", overturned)
@@ -277,7 +279,14 @@ def _of_systems(
 ) -> Table:
     """A table whose rows begin with a system and an intensity."""
     columns = key_columns(summary.keys, systems)
-    named = [key_cells(column, symbol(column.name)) for column in columns]
+    names = named_cells(columns)
+    named = [
+        (symbol(column.name), names[column.name])
+        if column.name in names
+        else key_cells(column, symbol(column.name))
+        for column in columns
+        if names.get(column.name) != []
+    ]
     rows = [
         [*(texts[place] for _, texts in named), *others]
         for place, others in enumerate(cells)

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import takewhile
 from typing import Any, NamedTuple
@@ -15,19 +16,18 @@ from pydantic import Field
 from rpscli.case.study.reports import ReportOptions, VariedKeys
 from rpscli.report.figures import style
 from rpscli.report.figures.look import FONT_SIZE, SMALL
-from rpscli.report.study.panels import left_out, over
+from rpscli.report.study.panels import first_of, in_sheets, left_out, over
 from rpscli.report.study.report import (
     DemandName,
     Found,
     Report,
     StatisticOrShare,
     key_columns,
-    label,
-    plain,
     reached,
 )
 from rpscli.report.table import Column
 from rpscli.sweep.evaluation import SCALARS
+from rpscli.sweep.names import label_parts, labels, tick_of
 from rpscli.sweep.statistics.grouping import (
     Grouping,
     Histories,
@@ -43,6 +43,7 @@ MOST_COLUMNS = 12
 SMALLER = 0.75  # second texts of cells, as a part of small letters
 LEAST_WIDTH = 0.55  # of a column, and height of a line of its labels [in]
 LINE = 0.13
+LOW_ROW = 0.19  # height of a row of single texts [in]
 
 
 class OverturningOptions(ReportOptions):
@@ -157,15 +158,16 @@ def table_report(study: StoredPoints, options: TableOptions) -> Found:
     written = key_columns(rows.keys, [row.values for row in rows.groups])
     for place, values_across in enumerate(columns):
         named = zip(column_keys, values_across, strict=True)
-        name = ";".join(f"{key}={plain(value)}" for key, value in named)
+        name = ";".join(f"{key}={tick_of(key, value)}" for key, value in named)
         written += _cell_columns(subject, name, [row[place] for row in cells], nothing)
     written.append(Column("counted", "-", [len(row) for row in rows.groups]))
     written.append(Column("failed", "-", [row.failed for row in rows.groups]))
 
-    heads = ["\n".join(map(label, column_keys, values)) or "all" for values in columns]
+    heads = ["\n".join(label_parts(column_keys, values)) or "all" for values in columns]
     above = [over(rows.pooled), subject.words, left_out(rows.failed)]
-    shown = ShownTable(_row_names(rows), heads, cells, above)
-    return Found({"": written}, lambda title: partial(_picture, shown, title), rows.notes)
+    whole = [labels(rows.keys, row.values) for row in rows.groups]
+    shown = ShownTable(_row_names(rows), heads, cells, above, whole)
+    return Found({"": written}, shown, rows.notes)
 
 
 def _cell_columns(
@@ -187,7 +189,7 @@ def _row_names(rows: Grouping) -> list[str]:
     names = []
     before = list[str]()
     for row in rows.groups:
-        parts = list(map(label, rows.keys, row.values))
+        parts = label_parts(rows.keys, row.values)
         same = takewhile(lambda pair: len({*pair}) == 1, zip(parts, before, strict=False))
         names.append(", ".join(parts[len([*same]) :]))
         before = parts
@@ -201,13 +203,49 @@ def overturning(study: StoredPoints, options: OverturningOptions) -> Found:
     )
 
 
-class ShownTable(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class ShownTable:
     """A table as its picture shows it, and remarks above it."""
 
     names: list[str]
     heads: list[str]
     cells: list[list[Cell]]
     above: list[str]
+    whole: list[str]  # names of rows that do not go on from the row before
+    part: str = ""  # of several sheets
+
+    def __call__(self, title: str) -> style.Draw:
+        """Its picture under a title."""
+        return partial(_picture, self, title)
+
+    @property
+    def width(self) -> float:
+        """That of a figure of ours [in]."""
+        return min(style.WIDTH, 3.4 + 1.25 * len(self.heads))
+
+    def sheets(self, room: float) -> list[ShownTable]:
+        """The table in parts of at most a page, where figures are so wide [in]."""
+        fitted = _fitted(self, min(room, self.width))
+        count = len(fitted.names)
+        parts = in_sheets(count, 1, fitted.height, _around(fitted))
+        if len(parts) == 1:
+            return [self]
+        left = first_of(count, len(self.cells), "rows")
+        return [
+            replace(
+                self,
+                names=[self.whole[part.start], *self.names[part][1:]],
+                cells=self.cells[part],
+                whole=self.whole[part],
+                part=", ".join(filter(None, (f"sheet {number} of {len(parts)}", left))),
+            )
+            for number, part in enumerate(parts, start=1)
+        ]
+
+
+def _around(fitted: _Fitted) -> float:
+    """Height of heading and labels of columns [in]."""
+    return 0.6 + LINE * _lines(fitted.heads)
 
 
 class _Fitted(NamedTuple):
@@ -219,6 +257,12 @@ class _Fitted(NamedTuple):
     below: list[list[str]]  # second texts of the cells
     room: float  # width of a column [in]
     height: float  # of a row [in]
+
+    def lower(self) -> _Fitted:
+        """Rows without second texts, where these leave no room for all rows."""
+        below = [[""] * len(row) for row in self.below]
+        height = max(LOW_ROW, 0.1 + LINE * _lines(self.names))
+        return self._replace(below=below, height=min(height, self.height))
 
 
 SIZE = SMALL * FONT_SIZE
@@ -263,17 +307,21 @@ def _picture(shown: ShownTable, title: str, figure: style.Figure) -> None:
     """The first rows and columns, on cells that are the darker
     the larger their numbers.
     """
-    own = min(style.WIDTH, 3.4 + 1.25 * len(shown.heads))
+    own = shown.width
     fitted = _fitted(shown, style.room(figure, own))
     columns = len(fitted.heads)
-    other = 0.6 + LINE * _lines(fitted.heads)
+    other = _around(fitted)
     most = len(fitted.names)
+    alone = ""
     if style.given(figure):
         room = style.inches(figure)[1] - other
+        if most * fitted.height > room:
+            fitted = fitted.lower()
+            alone = "in cells the first value alone"
         most = min(most, max(1, int(room / fitted.height)))
     counts = ("rows", most, len(shown.cells)), ("columns", columns, len(shown.heads))
-    cut = [f"the first {some} of {of} {what}" for what, some, of in counts if some < of]
-    words = (title, *cut, *shown.above)
+    cut = [first_of(some, of, what) for what, some, of in counts]
+    words = (title, shown.part, *cut, *shown.above, alone)
     style.begin(figure, words, other + most * fitted.height, own)
     axes = figure.subplots()
     shades = [[cell.shade for cell in row] for row in fitted.cells[:most]]

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from rpscli.records.measures import measure_label
 from rpscli.shown import Frozen, frozen
+from rpscli.sweep.names import with_names
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.fractiles import Share, demand, fractiles, share_of
 from rpscli.sweep.table import Array, Indices, Outcomes, PointTable, groups
@@ -161,7 +162,10 @@ def pooled(layout: StudyPoints, keys: Sequence[str]) -> tuple[str, ...]:
 
 
 def shown_keys(layout: StudyPoints, keys: Sequence[str]) -> tuple[str, ...]:
-    """The keys as tables and figures call them: an intensity by its measure."""
+    """The keys as tables and figures call them: an intensity by its measure, those of an
+    axis with the names of its rows.
+    """
     measure = layout.plan.measure
     name = INTENSITY if measure is None else measure_label(measure.measure, layout.of)
-    return tuple(name if key == INTENSITY else key for key in keys)
+    axes = layout.study.axes
+    return tuple(name if key == INTENSITY else with_names(axes, key) for key in keys)

@@ -32,7 +32,7 @@ class SummaryRow(Histories):
 @dataclass(frozen=True, eq=False)
 class Summary:
     """All rows; `pooled` says what differs within a row besides the
-    record, `notes` warn of it.
+    record, `notes` warn of it. `systems` are the names of those of the rows.
     """
 
     keys: tuple[str, ...]
@@ -40,6 +40,7 @@ class Summary:
     notes: tuple[str, ...]
     quantities: tuple[ResultQuantity, ...]
     rows: tuple[SummaryRow, ...]
+    systems: tuple[str, ...] = ()
 
 
 class Records(Outcomes):
@@ -87,7 +88,11 @@ def summary(table: PointTable, fixed: FixedBaseReferences) -> Summary:
         notes.append(
             "on the fixed base every building is elastic, also where its storeys yield"
         )
-    return Summary(found.keys, found.pooled, tuple(notes), tuple(known), tuple(rows))
+    layout = table.layout
+    systems = tuple(layout.system_name(group.every[0]) for group in found.groups)
+    return Summary(
+        found.keys, found.pooled, tuple(notes), tuple(known), tuple(rows), systems
+    )
 
 
 def summary_of_records(records: Records) -> Summary:

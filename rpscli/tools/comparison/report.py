@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import PurePath
 from typing import Any, NamedTuple
@@ -16,14 +17,15 @@ from rpscli.errors import beginning
 from rpscli.report.figures import style
 from rpscli.report.study import fragility, panels
 from rpscli.report.study.fragility import Binned, binned
+from rpscli.report.study.fragility_options import MeasureOptions
 from rpscli.report.study.report import (
     Found,
     Report,
     keyed,
-    labels,
     reached,
 )
 from rpscli.report.table import Column
+from rpscli.sweep.names import labels
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.fractiles import Share, clustered, demand, fractiles
 from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping
@@ -36,7 +38,10 @@ from rpscli.sweep.table import (
 )
 from rpscli.tools.comparison.observed import OVERTURNED, Observed, comparable
 
-MOST_ROWS = 8  # of panels in the figure; the CSV files have all
+MOST_PANELS = 16  # in the figure; the CSV files have all
+EACH = 3.1
+AROUND = 0.6
+"""Heights of a panel, and of what is around all of them [in]."""
 SHOWN = {
     "": (
         "counted",
@@ -66,7 +71,7 @@ TOLD = {
 """Words for observed and computed overturning."""
 
 
-class ComparisonOptions(fragility.MeasureOptions):
+class ComparisonOptions(MeasureOptions):
     """Endings and maxima beside those that were observed."""
 
 
@@ -123,10 +128,10 @@ def comparison(study: StoredPoints, options: ComparisonOptions) -> Found:
     shown = [
         s for s, kind in kinds.items() if any(isinstance(c.found, kind) for c in compared)
     ]
-    draw = partial(comparison_figure, systems.keys, compared, intensity)
+    figure = ComparisonFigure(systems.keys, compared, intensity)
     return Found(
         _tables(systems.keys, compared, intensity, layout),
-        (lambda title: partial(draw, title)) if compared else None,
+        figure if compared else None,
         [*pairs.notes, *systems.notes],
         shown={
             suffix: dict.fromkeys((*systems.keys, *SHOWN[suffix]), "") for suffix in shown
@@ -204,29 +209,53 @@ def _tables(
     return {suffix: keyed(keys, heads[suffix], of) for suffix, of in rows.items()}
 
 
-def comparison_figure(
-    keys: Sequence[str],
-    compared: Sequence[Compared],
-    intensity: Intensity,
-    title: str,
-    figure: style.Figure,
-) -> None:
+@dataclass(frozen=True, eq=False)
+class ComparisonFigure:
     """One panel a system and quantity."""
-    across = 1 if len(compared) == 1 or style.narrow(figure) else 2
-    shown, cut = panels.first(figure, compared, across, MOST_ROWS * across, 5)
-    down = -(-len(shown) // across)
-    width = style.WIDTH if across > 1 else 0.7 * style.WIDTH
-    style.begin(figure, (title, cut), 0.6 + 3.1 * down, width)
-    grid = figure.subplots(down, across, squeeze=False)
-    style.blank(grid.flat[len(shown) :])
-    for axes, each in zip(grid.flat, shown, strict=False):
-        if isinstance(each.found, Endings):
-            line = _draw_outcomes(axes, each, each.found, intensity)
-        else:
-            line = _draw_maxima(axes, each, each.found)
-        system = labels(keys, each.values)
-        axes.set_title(f"{system}\n{line}" if system else line, fontsize=style.small())
-    style.legend_below(figure, grid.flat)
+
+    keys: Sequence[str]
+    compared: Sequence[Compared]
+    intensity: Intensity
+    part: str = ""  # of several sheets
+
+    def __call__(self, title: str) -> style.Draw:
+        """The figure under a title."""
+        return partial(self._fill, title)
+
+    def sheets(self, room: float) -> list[ComparisonFigure]:
+        """The figure in parts of at most a page, where figures are so wide [in]."""
+        across = self._across(room)
+        shown = min(len(self.compared), MOST_PANELS)
+        parts = panels.in_sheets(shown, across, EACH, AROUND)
+        if len(parts) == 1:
+            return [self]
+        left = panels.first_of(shown, len(self.compared), "panels")
+        told = (f"sheet {number} of {len(parts)}" for number in range(1, len(parts) + 1))
+        return [
+            replace(self, compared=self.compared[part], part=panels.remarks(sheet, left))
+            for part, sheet in zip(parts, told, strict=True)
+        ]
+
+    def _across(self, room: float) -> int:
+        return 1 if len(self.compared) == 1 or room < style.WIDTH else 2
+
+    def _fill(self, title: str, figure: style.Figure) -> None:
+        across = self._across(style.room(figure))
+        shown, cut = panels.first(figure, self.compared, across, MOST_PANELS, 5)
+        down = -(-len(shown) // across)
+        width = style.WIDTH if across > 1 else 0.7 * style.WIDTH
+        style.begin(figure, (title, self.part, cut), AROUND + EACH * down, width)
+        grid = figure.subplots(down, across, squeeze=False)
+        style.blank(grid.flat[len(shown) :])
+        for axes, each in zip(grid.flat, shown, strict=False):
+            if isinstance(each.found, Endings):
+                line = _draw_outcomes(axes, each, each.found, self.intensity)
+            else:
+                line = _draw_maxima(axes, each, each.found)
+            system = labels(self.keys, each.values)
+            text = f"{system}\n{line}" if system else line
+            axes.set_title(text, fontsize=style.small())
+        style.legend_below(figure, grid.flat)
 
 
 def _draw_outcomes(

@@ -23,12 +23,13 @@ from rpscli.report.limits import (
     verdict_texts,
 )
 from rpscli.report.study import panels
-from rpscli.report.study.report import axis_label, key_columns, label, reached, symbol
+from rpscli.report.study.report import axis_label, key_columns, reached
 from rpscli.report.study.statistics import verdict_document
 from rpscli.report.table import Column, Part, Table, large, shown
+from rpscli.sweep.names import label, symbol, unit_of
 from rpscli.sweep.statistics.fractiles import CONFIDENCE
 from rpscli.sweep.statistics.verdicts import Verdict
-from rpscli.sweep.table import Array, unit_of
+from rpscli.sweep.table import Array
 from rpscli.tools.design.keys import Objective
 from rpscli.tools.design.search import ROBUST, Answer, Requirement
 
