@@ -45,8 +45,10 @@ from rpscli.report.figures.look import FIGURES
 Panel = TypeVar("Panel", bound=Callable[..., None])
 
 
-def _examined(draw: Panel) -> Panel:
-    """A panel that refuses other axes and another result than it is annotated with."""
+def _examined(draw: Panel, *, shared: bool = False) -> Panel:
+    """A panel that refuses other axes and another result than it is annotated with; a
+    legend that it shares with others in our figures is its own here.
+    """
     axes_name, drawn_name, *_ = (*draw.__annotations__.values(), "")
 
     @wraps(draw)
@@ -64,7 +66,7 @@ def _examined(draw: Panel) -> Panel:
                     " help(rpscli.figures)"
                 )
         draw(axes, drawn, *arguments, **named)
-        if legend and axes.get_legend() is None:
+        if shared and legend:
             _style.legend_above(axes)
         _style.fit([axes])
         if not legend and (made := axes.get_legend()) is not None:
@@ -86,7 +88,7 @@ displacements = _examined(history.draw_displacements)
 elastic_displacements = _examined(history.draw_drifts)
 energy = _examined(history.draw_energy)
 events = _examined(history.draw_events)
-floor_accelerations = _examined(floors.draw_accelerations)
+floor_accelerations = _examined(floors.draw_accelerations, shared=True)
 floor_spectrum = _examined(floors.draw_floor_spectrum)
 ground_acceleration = _examined(history.draw_ground)
 lift = _examined(_structure.draw_lift)
@@ -98,9 +100,9 @@ rotation = _examined(history.draw_rotation)
 spectra = _examined(motions.draw_spectra)
 spectrum = _examined(motions.draw_spectrum)
 storey_curve = _examined(_structure.draw_force)
-storey_drifts = _examined(floors.draw_storey_drifts)
+storey_drifts = _examined(floors.draw_storey_drifts, shared=True)
 storey_loop = _examined(floors.draw_loop)
-storey_shears = _examined(floors.draw_shears)
+storey_shears = _examined(floors.draw_shears, shared=True)
 structure = _examined(_structure.draw_structure)
 style = _style.in_style
 

@@ -4,7 +4,7 @@ tried, computed and shown.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
 from itertools import groupby
@@ -38,8 +38,10 @@ POINTS_SHOWN = 3
 """At each end of a study."""
 OF_A_REPORT = 12
 """Warnings that are shown at most."""
-FEWER = (40, 30, 22, 16, 12, 9, 6, 4, 2, 1)
+FEWER = (40, 30, 26, 22, 19, 16, 14, 12, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1)
 """Rows of a table: the most of them that fit."""
+SOME_ROWS = 4
+"""Of a table at least, before another one gives way."""
 ALL = "; --all prints them"
 
 
@@ -180,41 +182,60 @@ class Swept(NamedTuple):
         return shell.concluded(document, self.error)
 
     def tables(self, most: int = 0) -> list[Part]:
-        """All, or as many rows of each as fit into some lines:
-        statistics are cut first.
+        """All, or what fits into some lines: reports whole rather than
+        verdicts and statistics, of which few rows stand, or counts.
         """
         result = self.result
-        judged = self.result.judgements
-        told = list(self._told())
         counts = counts_of_points(result)
         listing = [(name, str(count)) for name, count in counts.items()]
         listing.append(("records scaled to", result.layout.scaled_to))
         head: list[Part] = [Heading(result.study.title), Table.listing(listing)]
+        note = result.summary and of_study.note_of_directions(result.layout)
+        last = [note] if note else []
         if not most:
             every = (
                 {of.name for of in result.summary.quantities} if result.summary else None
             )
-            return [*head, *of_study.summary_tables(result.summary, every), *told]
-        statistics = list(of_study.summary_tables(result.summary, asked(result.layout)))
-        elsewhere = f"statistics are in statistics.csv{ALL}"
+            statistics = of_study.summary_tables(result.summary, every)
+            return [*head, *statistics, *self._verdicts(), *self._reports(), *last]
         few = head
-        for rows, of_reports in [(n, FEWER[0]) for n in FEWER] + [(0, n) for n in FEWER]:
-            some = of_study.cut(statistics, rows, ALL) if rows else [elsewhere]
-            limits = [counts_of_limits(judged)] if len(judged) > of_reports else []
-            few = [*head, *some, *limits, *of_study.cut(told, of_reports, ALL)]
+        for parts in self._fewer():
+            few = [*head, *parts, *last]
             if shell.rendered(few).count("\n") <= most:
                 break
         return few
 
-    def _told(self) -> Iterator[Part]:
-        """Parts on what counts as overturned, verdicts, reports; a remark of several is
-        said once.
+    def _fewer(self) -> Iterator[list[Part]]:
+        """Parts for ever fewer lines: rows of statistics go first, then those of verdicts,
+        then those of reports, which were asked for.
         """
+        result = self.result
+        verdicts = list(self._verdicts())
+        reports = list(self._reports())
+        statistics = list(of_study.summary_tables(result.summary, asked(result.layout)))
+        for rows in FEWER:
+            yield [*of_study.cut(statistics, rows, ALL), *verdicts, *reports]
+        elsewhere: list[Part] = [f"statistics are in statistics.csv{ALL}"]
+        if result.summary is None:
+            elsewhere = []
+        yield [*elsewhere, *verdicts, *reports]
+        judged = [counts_of_limits(result.judgements)] * bool(result.judgements)
+        for rows in (n for n in FEWER if n >= SOME_ROWS):
+            yield [*elsewhere, *judged, *of_study.cut(verdicts, rows, ALL), *reports]
+        remarks = [part for part in verdicts if not isinstance(part, Table)]
+        for some in _fewer_reports(reports):
+            yield [*elsewhere, *judged, *remarks, *some]
+
+    def _verdicts(self) -> Iterator[Part]:
+        """Parts on what counts as overturned, and verdicts."""
         result = self.result
         if result.summary is not None:
             yield of_study.of_first_system(result.layout)
             if result.judgements:
                 yield of_study.verdict_table(result.summary, result.judgements)
+
+    def _reports(self) -> Iterator[Part]:
+        """Parts of reports; a remark of several is said once."""
         remarks = set[Part]()
         for part in self.found.parts:
             if isinstance(part, Table):
@@ -223,8 +244,18 @@ class Swept(NamedTuple):
             if isinstance(part, Heading) or part not in remarks:
                 yield part
             remarks.add(part)
-        if result.summary and (note := of_study.note_of_directions(result.layout)):
-            yield note
+
+
+def _fewer_reports(reports: Sequence[Part]) -> Iterator[list[Part]]:
+    """Reports with ever fewer rows; where some rows of each leave no room for all, the
+    first reports, and in which files the others are.
+    """
+    starts = [n for n, part in enumerate(reports) if isinstance(part, Heading)]
+    for count in range(len(starts), 0, -1):
+        end = starts[count] if count < len(starts) else len(reports)
+        others = [f"{reports[n]}: {reports[n]}.csv{ALL}" for n in starts[count:]]
+        for rows in (n for n in FEWER if n >= SOME_ROWS or count == 1):
+            yield [*of_study.cut(reports[:end], rows, ALL), *others]
 
 
 def swept(

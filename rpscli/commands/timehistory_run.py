@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from itertools import groupby
 from typing import Any, NamedTuple
 
-from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
+from rpscli.analyses.result_quantities import LIMITED
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.timehistory import Neighbour, neighbours, time_history
 from rpscli.case.conditions import (
@@ -20,6 +20,7 @@ from rpscli.case.conditions import (
 )
 from rpscli.case.plausibility import doubts_of_directions
 from rpscli.commands import inputs
+from rpscli.commands.records_table import Records, records_parts
 from rpscli.commands.shell.options import Output
 from rpscli.commands.shell.terminal import concluded, leave, patience
 from rpscli.errors import (
@@ -42,10 +43,6 @@ from rpscli.report.table import (
     Part,
     Table,
     csv_text,
-    headed,
-    large,
-    shown,
-    standing,
     told_once,
 )
 from rpscli.report.timehistory import (
@@ -59,23 +56,18 @@ from rpscli.report.timehistory import (
     timehistory_tables,
     without_passes,
 )
-from rpscli.sweep.statistics.fractiles import Spread
-from rpscli.sweep.statistics.summary import Records, Summary, summary_of_records
+from rpscli.sweep.statistics.summary import (
+    Records as Histories,
+)
+from rpscli.sweep.statistics.summary import (
+    Summary,
+    summary_of_records,
+)
 from rpscli.sweep.statistics.verdicts import Verdict, judged_records
 
 COMMAND = "timehistory"
 
-DIGITS = 4
 OF_ONE_COLUMN = ("max_column_force", "column_moment")
-A_TABLE = 4
-"""Quantities side by side in a table that fits a page."""
-STATISTICS = {
-    "mean": "mean of maxima",
-    "median": "median",
-    "high": "84 %",
-    "largest": "largest",
-}
-"""Words for attributes of a `Spread`, below the records of a table."""
 CODES = (
     "codes take the mean of the maxima of 7 records (EN 1998-1) or 11 pairs (ASCE/SEI"
     " 7-16, chapter 16) and more; with 3 to 6 records EN 1998-1 takes the largest"
@@ -172,7 +164,9 @@ def compute(
     if result.failure:
         history.error = AnalysisError(result.failure)
     else:
-        records = Records.of([result.outcome], [history.demands], [result.record.source])
+        records = Histories.of(
+            [result.outcome], [history.demands], [result.record.source]
+        )
         history.verdicts = judged_records(records, [history.label], limits)
         over = [
             f"limit exceeded: {excess_text(v)}" for v in history.verdicts if v.exceeded
@@ -347,7 +341,7 @@ def computed_set(
             out.terminal.warn(history.folder.undrawn)
     outcomes = [history.document["outcome"] for history in group]
     sources = [history.ground.horizontal.source for history in group]
-    records = Records.of(outcomes, [history.demands for history in group], sources)
+    records = Histories.of(outcomes, [history.demands for history in group], sources)
     case = group[0].given.case
     limits = case_conditions(case.limits, case.structure, len(group))
     verdicts = judged_records(
@@ -443,23 +437,18 @@ def set_tables(computed: Sequence[Computed]) -> Iterator[Part]:
     """Every record, mean and largest, and the verdicts."""
     for case in computed:
         yield Heading(case.first.given.case.title)
-        if aims := dict.fromkeys(
+        records = _records(case)
+        aims = dict.fromkeys(
             filter(None, (each.ground.scaled_to for each in case.histories))
-        ):
-            yield f"records scaled to {' or '.join(aims)}"
+        )
+        told = [f"records scaled to {' or '.join(aims)}"] if aims else []
+        if records.several and len(words := {*records.words}) == 1:
+            told.append(f"outcome of all: {words.pop()}")
+        if told:
+            yield "; ".join(told)
         (row,) = case.together.rows
-        spreads = zip(case.together.quantities, row.spreads, strict=True)
         own = case.first.given.case
-        # Forces of single columns are known where their number is.
-        further = {"max_damper_force", *OF_ONE_COLUMN * (own.structure.columns > 1)}
-        further |= {verdict.condition.name for verdict in case.verdicts}
-        main = [
-            pair
-            for pair in spreads
-            if pair[0].demand or (pair[0].name in further and not pair[0].from_below)
-        ]
-        for first in range(0, len(main), A_TABLE):
-            yield _records_table(case, dict(main[first : first + A_TABLE]))
+        yield from records_parts(records)
         if len(case.histories) > 1:
             undefined = ", so the mean of maxima is not defined" * bool(
                 row.overturned.number
@@ -485,35 +474,21 @@ def set_tables(computed: Sequence[Computed]) -> Iterator[Part]:
         yield note
 
 
+def _records(case: Computed) -> Records:
+    """The histories of a case for their table; forces of single columns are known where
+    their number is.
+    """
+    columns = case.first.given.case.structure.columns
+    return Records(
+        case.labels,
+        [history.document for history in case.histories],
+        case.together,
+        asked=[verdict.condition.name for verdict in case.verdicts],
+        further=OF_ONE_COLUMN if columns > 1 else (),
+    )
+
+
 def _note(computed: Sequence[Computed]) -> str:
     grounds = (history.ground for case in computed for history in case.histories)
     planar = computed[0].first.given.case.structure.planar_only
     return direction_note((ground.y is not None for ground in grounds), planar)
-
-
-def _records_table(case: Computed, quantities: dict[ResultQuantity, Spread]) -> Table:
-    rows = []
-    for label, history in zip(case.labels, case.histories, strict=True):
-        document = history.document
-        outcome = str(history.document["outcome"])
-        word = (
-            "overturned"
-            if outcome.startswith("overturned")
-            else outcome.replace("_", " ")
-        )
-        values = [large(document[q.name], q.unit)[0] for q in quantities]
-        rows.append([label, word, *(shown(value, DIGITS) for value in values)])
-    if len(case.histories) > 1:
-        words = dict(STATISTICS)
-        if case.together.rows[0].overturned.number:
-            words |= {
-                "low_stands": "least that stands",
-                "high_stands": "largest that stands",
-            }
-        for name, label in words.items():
-            values = [
-                large(getattr(each, name), q.unit)[0] for q, each in quantities.items()
-            ]
-            rows.append([label, "", *(standing(value, DIGITS) for value in values)])
-    heads = [headed(q.label, q.unit) for q in quantities]
-    return Table.of_texts(["record", "", *heads], rows, words=2)

@@ -393,3 +393,36 @@ def test_many_systems_print_few_lines(tmp_path, monkeypatch):
     assert "base shear" in whole.stdout
     assert "base shear" not in short.stdout  # nothing asks for it
     assert short.stderr.splitlines()[-1] == "error: 72 of 72 limits exceeded."
+
+
+def test_what_was_asked_is_printed_whole_and_verdicts_are_counted_once(
+    tmp_path, monkeypatch
+):
+    """24 fragilities, one of each system: all of them, before rows of verdicts."""
+    monkeypatch.chdir(tmp_path)
+    alphas = [round(0.1 + 0.005 * n, 3) for n in range(12)]
+    study = SMALL | {
+        "vary": [
+            {"podium.bearing.slenderness": alphas},
+            {"podium.bearing.curvature_ratio": [0.4, 0.5]},
+        ],
+        "limits": {"rotation_ratio": 1e-3, "drift_ratio": 1e-6},
+        "reports": [{"fragility": {"resamples": 0}}],
+        "records": ["synthetic:?pga=0.5g&duration=2&dt=0.02&seed=1"],
+        "scale": {"measure": "PGA", "values": ["0.2 g", "1.2 g", "2 g"]},
+    }
+    (tmp_path / "many.yaml").write_text(json.dumps(study), encoding="utf-8")
+    words = ["sweep", "many.yaml", "--figures", "none"]
+    done = CliRunner().invoke(program, words)
+    assert done.exit_code == 10, done.stderr
+    lines = done.stdout.splitlines()
+    assert len(lines) <= 60
+    assert sum("overturning" in line for line in lines) == 24
+    assert sum("at most 0.001" in line for line in lines) == 1
+    reports = [{"fragility": {"resamples": 0, "name": name}} for name in "abcd"]
+    again = json.dumps(study | {"reports": reports})
+    (tmp_path / "many.yaml").write_text(again, encoding="utf-8")
+    several = CliRunner().invoke(program, words).stdout
+    assert several.count("\n") <= 60
+    assert several.count("overturning") >= 24
+    assert "d: d.csv; --all prints them" in several

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
-from typing import Annotated, Any, Generic, TypeVar
+from typing import Annotated, Any, Generic, Literal, TypeVar
 
 from pydantic import AfterValidator, Field, create_model
 
-from rpscli.case.schema.fields import OneOf, Section, Text, refuse
+from rpscli.case.schema.fields import OneOf, Section, Several, Text, refuse
 from rpscli.case.schema.keys import inside
 from rpscli.case.study.schema import A_LIST, Analysis, AnyKeys, Axis, StudyFile
 from rpscli.case.text.document import Document, Fault, Path
@@ -50,6 +50,13 @@ FileName = Annotated[Text, AfterValidator(_file_name)]
 """Name of a file in the folder of results, without its ending."""
 
 
+TableFormats = Annotated[
+    tuple[Literal["csv", "tex", "xlsx"], ...],
+    Several(Literal["csv", "tex", "xlsx"], spaced=False),
+]
+"""Formats of tables: one or several."""
+
+
 class ReportOptions(Section):
     """Options that every report has."""
 
@@ -57,6 +64,9 @@ class ReportOptions(Section):
     """stem of its files; the report's kind by default"""
     title: Text | None = None
     """heading of the figure; the study's by default"""
+    formats: TableFormats = ("csv",)
+    """of its tables: csv, which is always written, tex for LaTeX with booktabs, and xlsx,
+    which needs openpyxl"""
 
 
 @dataclass(frozen=True)

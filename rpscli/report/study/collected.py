@@ -97,7 +97,9 @@ class Collected:
         """A report under the names of its files; its fault, if it cannot be made."""
         try:
             made = REPORTS[request.kind].make(results, request.options)
-            self.files |= dict(made.files(stem, request.options.title or title, look))
+            asked = request.options
+            files = made.files(stem, asked.title or title, look, asked.formats)
+            self.files |= dict(files)
             add_notes(self.notes, stem, made.notes)
             if document := made.document():
                 self.documents[stem] = document

@@ -84,10 +84,16 @@ class Line(NamedTuple):
     result: str
     x: tuple[Any, ...]  # numbers, or words if the varied key has any
     y: tuple[float, ...]
-    counted: tuple[
-        int, ...
-    ] = ()  # of the points that share an abscissa, those that stood
+    stood: tuple[int, ...] = ()  # of the points that share an abscissa
     overturned: tuple[int, ...] = ()
+
+    def counts(self, place: int) -> tuple[int, int, int]:
+        """Points behind one ordinate that did not fail; those of them that overturned and
+        that stood.
+        """
+        stood = self.stood[place]
+        overturned = self.overturned[place]
+        return stood + overturned, overturned, stood
 
 
 class Panel(NamedTuple):
@@ -158,7 +164,7 @@ def _chart(
         c + o < 2
         for panel in shown
         for line in panel.lines
-        for c, o in zip(line.counted, line.overturned, strict=True)
+        for c, o in zip(line.stood, line.overturned, strict=True)
     )
     statistic = "" if single else statistic_words(options.statistic)
     (x_key,) = shown_keys(layout, (options.x,))
@@ -171,7 +177,7 @@ def _columns(panel_keys: Sequence[str], chart: Chart, x_name: str) -> list[Colum
     rows = [
         (
             (*panel.values, *line.values), line.result, _unit(line.result), line.x[i],
-            reached(line.y[i]), *(statistic and (statistic, line.counted[i], line.overturned[i])),
+            reached(line.y[i]), *(statistic and (statistic, *line.counts(i))),
         )
         for panel in chart.panels
         for line in panel.lines
@@ -180,7 +186,7 @@ def _columns(panel_keys: Sequence[str], chart: Chart, x_name: str) -> list[Colum
     units = {_unit(name) for name in chart.results}
     unit = units.pop() if len(units) == 1 else "SI"
     heads = f"result, unit, {x_name} [{_unit(x_name)}], value [{unit}]"
-    heads += ", statistic, counted, overturned" * bool(statistic)
+    heads += ", statistic, counted, overturned, stood" * bool(statistic)
     return keyed((*panel_keys, *chart.series), heads, rows)
 
 
@@ -214,7 +220,7 @@ def _left_out_of_means(shown: Sequence[Panel]) -> str:
         repr((p.values, line.values)): line for p in shown for line in reversed(p.lines)
     }
     overturned = sum(sum(line.overturned) for line in first.values())
-    of = overturned + sum(sum(line.counted) for line in first.values())
+    of = overturned + sum(sum(line.stood) for line in first.values())
     if not overturned:
         return ""
     return (

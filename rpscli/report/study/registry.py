@@ -21,6 +21,7 @@ from rpscli.report.study import (
     table,
 )
 from rpscli.report.study.report import Report
+from rpscli.report.table_files import MISSING, has_workbooks
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.systems import needs_of
 
@@ -74,6 +75,8 @@ def requirement_faults(layout: StudyPoints) -> Iterator[Fault]:
             yield Fault(path, f"limits.{needs_of(name, 'no')}", at_key=own)
     for request in layout.study.reports:
         report = REPORTS[request.kind]
+        if "xlsx" in request.options.formats and not has_workbooks():
+            yield Fault(request.path, f"the report {request.kind}: formats: {MISSING}")
         for name in dict.fromkeys(report.results(request.options)):
             if lacking(layout, name):
                 yield Fault(request.path, f"the report {request.kind}: {needs_of(name)}")

@@ -33,6 +33,7 @@ from rpscli.report.table import (
     records,
     shown,
 )
+from rpscli.report.table_files import latex, workbook
 from rpscli.sweep.names import (
     NamedKey,
     Values,
@@ -68,6 +69,9 @@ SHEET = "_sheet_"
 """Before the number, in names of files of a figure from its second sheet on."""
 
 ENDS = ("_low", "_high")  # of names of columns that hold the ends of a band
+
+OVERTURNED = dict.fromkeys(("inf", "-inf"), "overturned")
+"""Cells of `reached` as readers see them."""
 
 Tables = Mapping[str, list[Column]]
 """Columns of each CSV file, by what follows the report's name in the file's."""
@@ -129,11 +133,22 @@ class Found:
         return drawn(sheets[sheet - 1](title))
 
     def files(
-        self, stem: str, title: str, look: Look = USUAL
-    ) -> Iterator[tuple[str, str | Drawing]]:
-        """Names and contents of its files."""
+        self, stem: str, title: str, look: Look = USUAL, formats: Sequence[str] = ()
+    ) -> Iterator[tuple[str, str | bytes | Drawing]]:
+        """Names and contents of its files; tables are also in the formats."""
         for suffix, columns in self.tables.items():
             yield f"{stem}{suffix}.csv", csv_text(columns)
+        if "tex" in formats:
+            for suffix, columns in self.tables.items():
+                if suffix in (self.shown or [""]):
+                    table = _readable(columns, self.shown.get(suffix, {}))
+                    yield f"{stem}{suffix}.tex", latex(table, title)
+        if "xlsx" in formats:
+            sheets = {
+                suffix.lstrip("_") or stem: columns
+                for suffix, columns in self.tables.items()
+            }
+            yield f"{stem}.xlsx", workbook(sheets)
         draws = {
             f"{stem}{SHEET}{number}" if number > 1 else stem: sheet(title)
             for number, sheet in enumerate(self.sheets(look), start=1)
@@ -180,11 +195,14 @@ def _readable(columns: Sequence[Column], labels: Mapping[str, str]) -> Table:
             continue
         if name.endswith(ENDS) or (labels and name not in labels):
             continue
-        own = labels.get(name) or symbol(name).replace("_", " ")
-        if (
-            any(isinstance(value, str | list | Written) for value in values)
-            or "." in name
-        ):
+        if not labels and ";" in name:
+            continue  # what else a cell of a table is made of
+        own = labels.get(name) or column.label or symbol(name).replace("_", " ")
+        if any(
+            isinstance(value, list | Written)
+            or (isinstance(value, str) and value not in OVERTURNED)
+            for value in values
+        ) or ("." in name and not column.label):
             head, texts = key_cells(column, own)
             heads.append(head)
             cells.append(texts)
@@ -201,7 +219,7 @@ def _readable(columns: Sequence[Column], labels: Mapping[str, str]) -> Table:
                 ["-" if math.isnan(value) else percent(value, 1.0) for value in values]
             )
         else:
-            cells.append([shown(value, 3) for value in values])
+            cells.append([OVERTURNED.get(str(v)) or shown(v, 3) for v in values])
     return Table.of_texts(heads, zip(*cells, strict=True), words=words, keys=words)
 
 

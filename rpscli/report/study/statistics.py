@@ -246,7 +246,8 @@ def summary_tables(
         yield _of_systems(summary, systems, named, spreads)
     if shown:
         yield (
-            "demands: median / 84 % fractile / largest; - where so many overturned, and"
+            "demands: median (of an even number the lower of the middle two) / 84 % fractile"
+            " / largest; - where so many overturned, and"
             " in brackets the least and the largest of those that stand"
         )
     if summary.pooled:

@@ -159,7 +159,9 @@ def table_report(study: StoredPoints, options: TableOptions) -> Found:
     for place, values_across in enumerate(columns):
         named = zip(column_keys, values_across, strict=True)
         name = ";".join(f"{key}={tick_of(key, value)}" for key, value in named)
-        written += _cell_columns(subject, name, [row[place] for row in cells], nothing)
+        head = labels(column_keys, values_across) or subject.result
+        of_column = [row[place] for row in cells]
+        written += _cell_columns(subject, (name, head), of_column, nothing)
     written.append(Column("counted", "-", [len(row) for row in rows.groups]))
     written.append(Column("failed", "-", [row.failed for row in rows.groups]))
 
@@ -171,14 +173,18 @@ def table_report(study: StoredPoints, options: TableOptions) -> Found:
 
 
 def _cell_columns(
-    subject: Subject, name: str, cells: Sequence[Cell], nothing: Cell
+    subject: Subject, names: tuple[str, str], cells: Sequence[Cell], nothing: Cell
 ) -> list[Column]:
-    """The numbers of one column of the table; those that `nothing` has are in each."""
+    """The numbers of one column of the table, whose name is for files and for readers;
+    those that `nothing` has are in each.
+    """
+    name, head = names
     return [
         Column(
             (name or subject.result) + suffix,
             "-" if suffix else subject.unit,
             [cell.numbers[suffix] for cell in cells],
+            head,
         )
         for suffix in nothing.numbers
     ]
