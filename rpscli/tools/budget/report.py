@@ -4,8 +4,9 @@ comes of each.
 
 from __future__ import annotations
 
+import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -40,6 +41,10 @@ FELT = 1e-3
 
 NO_CHANGE = "no change"
 MOST_PANELS = 4
+SEEN = 0.01
+"""Of a value, what a bar of the picture shows."""
+BETWEEN = " / "
+"""Between the values of one input, and what follows from each."""
 MOST_BARS = 24
 """In the picture; the table has all."""
 CAPTION = (
@@ -118,6 +123,16 @@ class Effect(NamedTuple):
         """The ratio to the value as the case is, with the verdict where that turns."""
         word = f" {_word(self.exceeded[row])}" if self.turned[row] else ""
         return f"{_over(self.values[row], self.values[0])}{word}"
+
+
+def _stem(change: str) -> tuple[str, float]:
+    """A change without the number that it ends with, and that number.
+
+    >>> _stem("period=0.27"), _stem("--scale 1.01"), _stem("rigid")
+    (('period=', 0.27), ('--scale ', 1.01), ('rigid', 0.0))
+    """
+    found = re.fullmatch(r"([\w.]+=|\S+ )([-+]?[\d.]+(?:e[-+]?\d+)?)", change)
+    return (found[1], float(found[2])) if found else (change, 0.0)
 
 
 def _word(exceeded: object) -> str:
@@ -227,17 +242,34 @@ class Budget:
                 yield f"{row.label}: {row.refused}"
         yield f"options of rps timehistory for each row stand in budget.csv; {REMARK}"
 
-    def _moves(self, row: int) -> bool:
-        return any(e.move(row) >= FELT or e.turned[row] for e in self.effects)
+    def _moves(self, row: int, least: float = FELT) -> bool:
+        return any(e.move(row) >= least or e.turned[row] for e in self.effects)
+
+    def _by_input(self, least: float) -> dict[str, list[int]]:
+        """Rows of each input, by its name and the values that it takes; of those that
+        move something by so much, what moves most first.
+        """
+        found: dict[tuple[str, str], list[int]] = {}
+        for row in self.inputs:
+            stem, _ = _stem(self.rows[row].change)
+            found.setdefault((self.rows[row].cause, stem), []).append(row)
+        named = {}
+        for (cause, stem), rows in found.items():
+            if any(self._moves(row, least) for row in rows):
+                rows.sort(key=lambda row: _stem(self.rows[row].change)[1])
+                values = [self.rows[row].change.removeprefix(stem) for row in rows]
+                change = f"{stem}{BETWEEN.join(values)}"
+                named[f"{cause}: {change}" if change else cause] = rows
+        return named
 
     def _table(self) -> Table:
         """Values as the case is, then over them those of changes and of records."""
         shown_ones = [effect for effect in self.effects if effect.quantity]
         heads = [_headed(effect) for effect in shown_ones]
         cells = [["as it is", *(effect.own_text for effect in shown_ones)]]
-        for row in filter(self._moves, self.inputs):
-            texts = [effect.text(row) for effect in shown_ones]
-            cells.append([self.rows[row].label, *texts])
+        for label, rows in self._by_input(FELT).items():
+            texts = [BETWEEN.join(map(effect.text, rows)) for effect in shown_ones]
+            cells.append([label, *texts])
         number = len(self.rows) - len(self.inputs) - 1
         for k, share in enumerate(SHARES if number else ()):
             texts = [_over(effect.spread[k], effect.values[0]) for effect in shown_ones]
@@ -302,12 +334,14 @@ class Budget:
         every = [effect for effect in self.effects if effect.quantity]
         shown_ones = every[: 2 if style.narrow(figure) else MOST_PANELS]
         more = len(every) - len(shown_ones)
-        note = f"{CAPTION}; {more} more in the table" if more else CAPTION
-        rows = [row for row in self.inputs if self._moves(row)][:MOST_BARS]
+        note = f"{CAPTION}; below {100.0 * SEEN:g} %: in the table"
+        note += f", as {more} more results are" * bool(more)
+        inputs = self._by_input(SEEN)
+        rows = [*inputs.values()][:MOST_BARS]
         part = 0.42 if style.narrow(figure) else 0.3
         names = [
-            style.folded(self.rows[row].label, part * style.room(figure), 7.0)
-            for row in rows
+            style.folded(label, part * style.room(figure), 7.0)
+            for label in [*inputs][:MOST_BARS]
         ]
         most = max((1 + name.count("\n") for name in names), default=1)
         height = 1.3 + (0.07 + 0.12 * most) * (1 + len(names))
@@ -323,18 +357,28 @@ class Budget:
         )
         panels[0].invert_yaxis()
 
-    def _draw(self, axes: style.Axes, effect: Effect, rows: list[int]) -> None:
-        """Ratios of one result to that of the case, cut where they leave the panel."""
+    def _draw(self, axes: style.Axes, effect: Effect, rows: Sequence[list[int]]) -> None:
+        """Ratios of one result to that of the case, cut where they leave the panel; of an
+        input that takes several values the longest bar is below the others.
+        """
         own = effect.values[0] or 1.0
         ratio = effect.values / own
         others = [n for n, row in enumerate(self.rows) if row.cause == RECORDS]
         finite = ratio[np.isfinite(ratio)]
         far = 1.1 * float(np.quantile(finite, 0.95)) if finite.size else 2.0
-        bars = np.clip(ratio[rows], -far, far)
+        pairs = [(place, row) for place, of in enumerate(rows) for row in of]
+        pairs.sort(key=lambda pair: -effect.move(pair[1]))
+        places, every = np.array(pairs, dtype=int).reshape(-1, 2).T
+        bars = np.clip(ratio[every], -far, far)
         colours = np.array([style.BLUE, style.ORANGE, style.RED])
-        kinds = np.where(effect.turned, 2, effect.moved)[rows]
-        places = np.arange(len(rows))
-        axes.barh(places, bars - 1.0, left=1.0, height=0.65, color=colours[kinds])
+        kinds = np.where(effect.turned, 2, effect.moved)[every]
+        look: dict[str, Any] = {
+            "left": 1.0,
+            "height": 0.65,
+            "edgecolor": "white",
+            "linewidth": 0.3,
+        }
+        axes.barh(places, bars - 1.0, color=colours[kinds], **look)
         points = np.clip(ratio[others], -far, far)
         axes.plot(points, [-1.0] * len(points), ".", color=style.GREY, alpha=0.6)
         axes.axvline(1.0, color=style.BLACK, lw=0.8)

@@ -12,7 +12,7 @@ from paper_structures import needs_compiled_kernels
 from rpscli.case.case import load_case
 from rpscli.records.loading import load_components
 from rpscli.tools.budget.command import _values
-from rpscli.tools.budget.report import _over
+from rpscli.tools.budget.report import _over, _stem
 
 pytestmark = needs_compiled_kernels
 
@@ -171,3 +171,42 @@ def test_a_case_that_overturns_has_no_ratios(workplace, rps):
     stood = [_over(value, math.inf) for value in (0.1, -1.0, math.inf, math.nan)]
     assert stood == ["-", "-", "overturned", "-"]
     assert _over(0.3, 0.2) == "1.5"
+
+
+def test_a_row_has_all_values_of_an_input_in_their_order(rps, rps_json):
+    """Ratios stand in the order of the values that give them."""
+    write_case("limited.yaml", more="limits: {base_shear_ratio: 9}\n")
+    words = ("budget", "limited.yaml", "--record", PULSES[1], *NONE, "--force")
+    own, *rows = rps_json(*words)["rows"]
+    lines = rps(*words).stdout.splitlines()
+    losses = {
+        float(row["change"].rpartition("=")[2]): row["values"]["base_shear_ratio"]
+        for row in rows
+        if row["cause"] == "impact loss"
+    }
+    assert len(losses) > 2
+    (line,) = (line for line in lines if line.startswith("impact loss"))
+    values, ratios = line.removeprefix("impact loss: loss=").split("  ", 1)
+    assert [*map(float, values.split(" / "))] == sorted(losses)
+    wanted = [
+        _over(losses[loss], own["values"]["base_shear_ratio"]) for loss in sorted(losses)
+    ]
+    assert ratios.strip().split(" / ") == wanted
+
+
+@pytest.mark.parametrize(
+    ("change", "stem", "number"),
+    [
+        ("recontact_tolerance=1e-05", "recontact_tolerance=", 1e-5),
+        ("devices.0.force=-2.5", "devices.0.force=", -2.5),
+        ("--scale 1.01", "--scale ", 1.01),
+        ("modes=null", "modes=null", 0.0),
+        (
+            "plane, period_ratio: 1.2, damping: 0.03",
+            "plane, period_ratio: 1.2, damping: 0.03",
+            0.0,
+        ),
+    ],
+)
+def test_values_of_one_input_are_told_from_its_name(change, stem, number):
+    assert _stem(change) == (stem, number)
