@@ -175,6 +175,15 @@ def with_band(value: float, low: float, high: float) -> str:
     )
 
 
+def _has_words(values: Iterable[object]) -> bool:
+    """True of values that are no plain numbers, as those of keys may be."""
+    return any(
+        isinstance(value, list | Written)
+        or (isinstance(value, str) and value not in OVERTURNED)
+        for value in values
+    )
+
+
 def _readable(columns: Sequence[Column], labels: Mapping[str, str]) -> Table:
     """The columns that have labels, or all; a value and the ends
     of its band are one cell.
@@ -198,11 +207,7 @@ def _readable(columns: Sequence[Column], labels: Mapping[str, str]) -> Table:
         if not labels and ";" in name:
             continue  # what else a cell of a table is made of
         own = labels.get(name) or column.label or symbol(name).replace("_", " ")
-        if any(
-            isinstance(value, list | Written)
-            or (isinstance(value, str) and value not in OVERTURNED)
-            for value in values
-        ) or ("." in name and not column.label):
+        if _has_words(values) or ("." in name and not column.label):
             head, texts = key_cells(column, own)
             heads.append(head)
             cells.append(texts)
