@@ -205,7 +205,8 @@ def test_what_is_installed_is_listed(example, rps_json):
         == (looked_at["rpscli.dampers: oil"])
     )
     report = rps_json("explain", "worst")
-    assert [option["key"] for option in report["options"]] == ["name", "title", "count"]
+    options = [option["key"] for option in report["options"]]
+    assert options == ["name", "title", "formats", "count"]
     assert "worst" in str(schema_of("study"))
 
 
