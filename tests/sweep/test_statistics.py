@@ -296,7 +296,8 @@ def test_lines_say_what_stands_for_the_records(study_of, statistic, values):
     shown = cells(found)
     assert shown["scale"] == [0.5, 0.5, 1.0, 1.0]
     # 1, 1, 1, 2, 2, 2 and three overturned; 1, 1, 2, 2 and five overturned
-    assert (shown["counted"][:2], shown["overturned"][:2]) == ([6, 4], [3, 5])
+    counts = [shown[name][:2] for name in ("counted", "overturned", "stood")]
+    assert counts == [[9, 9], [3, 5], [6, 4]]
     assert [float(value) for value in shown["value"][:2]] == values
 
 
