@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterator, Sequence
 
 from rpscli.analyses.result_quantities import EVERY, ResultQuantity
 from rpscli.case.conditions import EVENTS
-from rpscli.commands.timehistory_run import STATISTICS, Computed, set_tables
+from rpscli.commands.records_table import STATISTICS
+from rpscli.commands.timehistory_run import Computed, set_tables
 from rpscli.report.limits import VERDICT, verdict_texts, verdicts_in_short, worst_text
 from rpscli.report.page import Block
 from rpscli.report.table import PAGE_UNITS, Heading, Table, large, shown, standing
