@@ -269,9 +269,8 @@ def _single(
     """One history, and histories beside it."""
     (history,) = histories
     result = run.compute(history, conditions, out)
-    short = parts.history_short(
-        result, history.verdicts, run.look_beside(history, result)
-    )
+    told = run.beside_texts(history, result)
+    short = parts.history_short(result, history.verdicts, told)
     files = _names(history.folder)
     ground = parts.ground_section(history.ground, result.structure, out.look)
     plan = parts.plan_picture(result, history.label, out.look)
@@ -295,7 +294,7 @@ def _several(
     # That of a history that failed is none, and counts as 0.
     turned = [each.demands["rotation_ratio"] for each in histories]
     worst = max(range(len(turned)), key=lambda n: 0.0 if isnan(turned[n]) else turned[n])
-    result = run.compute(histories[worst], conditions, out)
+    result = run.compute(histories[worst], conditions, out, alone=False)
     files = _names(histories[worst].folder)
     components = [
         (f"{history.label}{', y' * (motion is history.ground.y)}", motion)

@@ -9,9 +9,15 @@ from dataclasses import dataclass, field, replace
 from itertools import groupby
 from typing import Any, NamedTuple
 
+from rpscli.analyses.neighbours import (
+    Neighbour,
+    nearest,
+    neighbours,
+    with_half_the_step,
+)
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.analyses.results import TimeHistoryResult
-from rpscli.analyses.timehistory import Neighbour, neighbours, time_history
+from rpscli.analyses.timehistory import time_history
 from rpscli.case.conditions import (
     Condition,
     case_conditions,
@@ -36,7 +42,14 @@ from rpscli.records.ground_motion import MotionComponents
 from rpscli.report.bundles import floor_spectra_files, timehistory_files
 from rpscli.report.figures.look import FilmRequest
 from rpscli.report.files import OutputFolder, heading, json_text
-from rpscli.report.limits import VERDICT, excess_text, verdict_texts, worst_text
+from rpscli.report.limits import (
+    VERDICT,
+    doubt_texts,
+    excess_text,
+    verdict_texts,
+    worst_text,
+)
+from rpscli.report.neighbours import neighbours_texts, step_text
 from rpscli.report.study import statistics
 from rpscli.report.table import (
     Heading,
@@ -47,7 +60,6 @@ from rpscli.report.table import (
 )
 from rpscli.report.timehistory import (
     direction_note,
-    neighbours_texts,
     note_of_direction,
     overturned_text,
     passes_text,
@@ -56,6 +68,7 @@ from rpscli.report.timehistory import (
     timehistory_tables,
     without_passes,
 )
+from rpscli.sweep.statistics.beside import beside_verdicts
 from rpscli.sweep.statistics.summary import (
     Records as Histories,
 )
@@ -79,8 +92,8 @@ class History:
     """A case under a motion, the folder of its results, and what it
     says once it is computed.
 
-    `demands` are by name, NaN for what it has not; spectra of floors
-    are made where asked for.
+    `demands` are by name, NaN for what it has not; `beside` are histories beside it,
+    `finer` the one with half the step; spectra of floors are made where asked for.
     """
 
     given: inputs.CaseInput
@@ -92,12 +105,19 @@ class History:
     document: dict[str, Any] = field(default_factory=dict)
     demands: dict[str, float] = field(default_factory=dict)
     verdicts: list[Verdict] = field(default_factory=list)
+    beside: list[Neighbour] = field(default_factory=list)
+    finer: Neighbour | None = None
     error: RpsError | None = None
 
     @property
     def ground(self) -> MotionComponents:
         """The motion itself."""
         return self.motion.ground
+
+    @property
+    def changed(self) -> list[Neighbour]:
+        """All histories that are looked at beside it."""
+        return [*self.beside, *filter(None, [self.finer])]
 
     @property
     def name(self) -> str:
@@ -147,9 +167,15 @@ def unique(names: Sequence[str]) -> list[str]:
 
 
 def compute(
-    history: History, conditions: Sequence[Condition], out: Output
+    history: History,
+    conditions: Sequence[Condition],
+    out: Output,
+    *,
+    alone: bool = True,
 ) -> TimeHistoryResult:
-    """Run a history, judge it, and collect its files; the caller writes them."""
+    """Run a history, judge it, look beside it, and collect its files, which the caller
+    writes; beside one of several only if there are limits, and only at the nearest.
+    """
     case = history.given.case
     ground = history.ground
     folder = history.folder
@@ -161,13 +187,21 @@ def compute(
     if history.floor_spectra:
         folder.add_all(floor_spectra_files(result, case.title, out.look))
     history.demands = limited(result)
+    if alone or limits:
+        # What needs samples takes long, which many records would multiply.
+        names = [each.name for each in limits] if alone else []
+        history.beside = neighbours(result, names) if alone else nearest(result)
+        history.finer = with_half_the_step(result, names)
     if result.failure:
         history.error = AnalysisError(result.failure)
     else:
-        records = Histories.of(
-            [result.outcome], [history.demands], [result.record.source]
+        label = [history.label]
+        sources = [result.record.source]
+        records = Histories.of([result.outcome], [history.demands], sources)
+        judged = judged_records(records, label, limits)
+        history.verdicts = beside_verdicts(
+            judged, [history.changed], label, sources, limits
         )
-        history.verdicts = judged_records(records, [history.label], limits)
         over = [
             f"limit exceeded: {excess_text(v)}" for v in history.verdicts if v.exceeded
         ]
@@ -220,6 +254,9 @@ def _document(history: History, result: TimeHistoryResult) -> dict[str, Any]:
             statistics.verdict_document((), verdict) for verdict in history.verdicts
         ],
     }
+    if history.beside:
+        document["neighbours"] = [each._asdict() for each in history.beside]
+        document["half_step"] = history.finer and history.finer._asdict()
     document["record"] |= {"scale": ground.scale, "scaled_to": ground.scaled_to or None}
     doubts = map(str, doubts_of_directions(case.structure, both=both))
     document["warnings"] = [
@@ -231,11 +268,11 @@ def _document(history: History, result: TimeHistoryResult) -> dict[str, Any]:
     return document
 
 
-def look_beside(history: History, result: TimeHistoryResult) -> list[Neighbour]:
-    """Histories beside a single one, which go into its document too."""
-    beside = neighbours(result)
-    history.document["neighbours"] = [each._asdict() for each in beside]
-    return beside
+def beside_texts(history: History, result: TimeHistoryResult) -> list[str]:
+    """What the histories beside a single one tell of it."""
+    limits = {each.condition.name: each.condition.limit for each in history.verdicts}
+    told = step_text(result, history.finer, limits)
+    return [*neighbours_texts(result, history.beside), *filter(None, [told])]
 
 
 def _add_summary(history: History) -> OutputFolder:
@@ -254,11 +291,10 @@ def run_one(
     film: FilmRequest | None,
     out: Output,
 ) -> None:
-    """Compute a single history, look beside it, and write and show all of it."""
+    """Compute a single history, and write and show all of it."""
     title = history.given.case.title
     terminal = out.terminal
     result = compute(history, conditions, out)
-    beside = look_beside(history, result)
     document = history.document
     if film is not None:
         draw = inputs.film_of("history")(result, title, film, out.look)
@@ -267,7 +303,7 @@ def run_one(
     document["warnings"] += history.folder.undrawn
     terminal.warn(document["warnings"])
     tables = timehistory_tables(result, history.verdicts, title, history.ground.scaled_to)
-    texts = [*neighbours_texts(result, beside), passes_text(result), document["note"]]
+    texts = [*beside_texts(history, result), passes_text(result), document["note"]]
     terminal.result(document, [*tables, *filter(None, texts)])
     leave(history.error)
 
@@ -335,7 +371,7 @@ def computed_set(
     is over, and judge them.
     """
     for history in group:
-        compute(history, conditions, out)
+        compute(history, conditions, out, alone=len(group) == 1)
         if written:
             _add_summary(history).write()
             out.terminal.warn(history.folder.undrawn)
@@ -343,10 +379,12 @@ def computed_set(
     sources = [history.ground.horizontal.source for history in group]
     records = Histories.of(outcomes, [history.demands for history in group], sources)
     case = group[0].given.case
-    limits = case_conditions(case.limits, case.structure, len(group))
-    verdicts = judged_records(
-        records, [each.label for each in group], [*limits, *conditions]
-    )
+    limits = [*case_conditions(case.limits, case.structure, len(group)), *conditions]
+    labels = [each.label for each in group]
+    verdicts = judged_records(records, labels, limits)
+    if "failed" not in outcomes:
+        changed = [each.changed for each in group]
+        verdicts = beside_verdicts(verdicts, changed, labels, sources, limits)
     return Computed(group, summary_of_records(records), verdicts, folder)
 
 
@@ -463,6 +501,13 @@ def set_tables(computed: Sequence[Computed]) -> Iterator[Part]:
             yield f"friction demands are {text}"
         yield overturned_text(own.structure, own.analysis)
         yield restitution_text(own.structure)
+    yield from _verdict_parts(computed)
+    if note := _note(computed):
+        yield note
+
+
+def _verdict_parts(computed: Sequence[Computed]) -> Iterator[Part]:
+    """The verdicts on all cases, and those that are in doubt."""
     rows = [
         [case.first.case_label, *verdict_texts(verdict)[:-1], worst_text(verdict)]
         for case in computed
@@ -470,8 +515,9 @@ def set_tables(computed: Sequence[Computed]) -> Iterator[Part]:
     ]
     if rows:
         yield Table.of_texts(["case", *VERDICT], rows, words=5, keys=2)
-    if note := _note(computed):
-        yield note
+    for case in computed:
+        of = f"{case.first.case_label}: " * (len(computed) > 1)
+        yield from doubt_texts(case.verdicts, of)
 
 
 def _records(case: Computed) -> Records:

@@ -15,7 +15,6 @@ import numpy as np
 
 from rpscli.analyses.pushover import pushover
 from rpscli.analyses.results import STEEL_ROTATION, TimeHistoryResult
-from rpscli.analyses.timehistory import Neighbour
 from rpscli.case.case import Case
 from rpscli.case.schema.keys import unit
 from rpscli.case.text.yaml_text import yaml_of
@@ -32,7 +31,7 @@ from rpscli.report.figures.motions import draw_spectra, record_figure
 from rpscli.report.figures.plan import ColumnPlan, draw_plan
 from rpscli.report.figures.structure import bearing_figure, draw_structure
 from rpscli.report.files import leaves, versions
-from rpscli.report.limits import limits_table, verdicts_in_short
+from rpscli.report.limits import doubt_texts, limits_table, verdicts_in_short
 from rpscli.report.motions import record_table
 from rpscli.report.page import (
     Attachment,
@@ -316,17 +315,20 @@ def _number(value: float | None) -> str:
 def history_short(
     result: TimeHistoryResult,
     verdicts: Sequence[Verdict],
-    beside: Sequence[Neighbour],
+    beside: Sequence[str],
 ) -> Iterator[Block]:
-    """Outcome and verdicts of one history, and how much it says."""
+    """Outcome and verdicts of one history, and how much it says, by texts on those
+    `beside` it.
+    """
     yield f"Outcome: {timehistory.outcome_text(result)}."
     if result.failure:
         yield Notice(result.failure)
     yield verdicts_in_short(verdicts)
     if verdicts:
         yield limits_table(verdicts)
+        yield from map(Notice, doubt_texts(verdicts))
     yield timehistory.restitution_text(result.structure)
-    yield from map(Notice, timehistory.neighbours_texts(result, beside))
+    yield from map(Notice, beside)
     told = timehistory.passes_text(result), timehistory.note_of_direction(result)
     yield from filter(None, told)
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
+from rpscli.analyses.neighbours import OF_MOTION
 from rpscli.case.conditions import EVENTS, FOR_A_MEAN, LIMITS, RATE, Condition
+from rpscli.errors import listed
 from rpscli.report.table import Table, large, measured
 from rpscli.sweep.statistics.verdicts import Verdict
 from rpscli.units import Written, digits_beside
@@ -127,6 +129,43 @@ def worst_text(verdict: Verdict) -> str:
     )
 
 
+def doubt_texts(verdicts: Sequence[Verdict], of: str = "") -> Iterator[str]:
+    """Each verdict that changes beside the histories reverse; values with one percent
+    less and more motion of all that has a limit.
+    """
+    for verdict in verdicts:
+        if not verdict.reversed_by:
+            continue
+        word, other = ("EXCEEDED", "met") if verdict.exceeded else ("met", "EXCEEDED")
+        yield (
+            f"{of}{verdict.condition.name} is {word} as it is, but {other} with"
+            f" {_changes_text(verdict)}: judge by more records"
+        )
+    if near := [
+        f"{verdict.condition.name} {_range_text(verdict)}"
+        for verdict in verdicts
+        if verdict.near and verdict.condition.name not in EVENTS
+    ]:
+        yield f"{of}with 1 % less or more motion {', '.join(near)}"
+
+
+def _changes_text(verdict: Verdict) -> str:
+    """Changes that reverse a verdict, factors on the motion together."""
+    words = verdict.reversed_by or ()
+    factors = [each.removesuffix(OF_MOTION) for each in words if each.endswith(OF_MOTION)]
+    others = [each for each in words if not each.endswith(OF_MOTION)]
+    together = [f"{listed(factors, 'and')}{OF_MOTION}"] if factors else []
+    return listed([*together, *others], "and with")
+
+
+def _range_text(verdict: Verdict) -> str:
+    """Least and largest value with one percent less and more motion."""
+    low, high = (reached_text(verdict.condition, each, 1) for each in verdict.near or ())
+    unit = low.partition(" ")[2]
+    first = low.removesuffix(f" {unit}") if high.endswith(f" {unit}") else low
+    return low if low == high else f"{first} to {high}"
+
+
 def excess_text(verdict: Verdict) -> str:
     """The limit that a single history exceeds."""
     condition = verdict.condition
@@ -136,7 +175,11 @@ def excess_text(verdict: Verdict) -> str:
     if verdict.overturned:
         return f"{condition.name}: {value} ({condition.source})"
     beyond = "is below" if condition.from_below else "exceeds"
-    return f"{condition.name} = {value} {beyond} {_bound(condition)} ({condition.source})"
+    asked = (
+        f"{condition.name} = {value} {beyond} {_bound(condition)} ({condition.source})"
+    )
+    doubt = f", but not with {_changes_text(verdict)}" if verdict.reversed_by else ""
+    return f"{asked}{doubt}"
 
 
 def verdicts_in_short(verdicts: Sequence[Verdict], of: str = "") -> str:
@@ -146,8 +189,11 @@ def verdicts_in_short(verdicts: Sequence[Verdict], of: str = "") -> str:
     what = f"{len(verdicts)} limits{of}"
     exceeded = sum(verdict.exceeded for verdict in verdicts)
     unsure = sum(not (verdict.exceeded or verdict.shown) for verdict in verdicts)
+    doubtful = sum(bool(verdict.reversed_by) for verdict in verdicts)
     first = f"{exceeded} of {what} exceeded" if exceeded else f"All {what} are met"
-    return f"{first}{f', {unsure} met but not shown' * bool(unsure)}."
+    parts = [first, *[f"{unsure} met but not shown"] * bool(unsure)]
+    parts += [f"{doubtful} in doubt, as a small change reverses it"] * bool(doubtful)
+    return f"{', '.join(parts)}."
 
 
 def counts_of_limits(verdicts: Sequence[Verdict]) -> Table:

@@ -12,6 +12,7 @@ import numpy as np
 
 from rpscli.analyses.column_design import WITHOUT_IMPULSE
 from rpscli.analyses.column_forces import AMPLE
+from rpscli.analyses.neighbours import OTHER_LOSS
 from rpscli.analyses.result_quantities import (
     EVERY,
     SAMPLED,
@@ -21,11 +22,11 @@ from rpscli.analyses.result_quantities import (
 )
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
-from rpscli.analyses.timehistory import OTHER_LOSS, Neighbour
+from rpscli.errors import listed
 from rpscli.model.podium import PodiumStructure
 from rpscli.report.column_table import column_table
 from rpscli.report.derived import UPPER
-from rpscli.report.limits import limits_table
+from rpscli.report.limits import doubt_texts, limits_table
 from rpscli.report.storey_demands import Array, fixed_base_demands, isolated_demands
 from rpscli.report.table import (
     LARGE_UNITS,
@@ -72,6 +73,7 @@ def timehistory_tables(
     yield from column_table(result)
     if verdicts:
         yield limits_table(verdicts)
+        yield from doubt_texts(verdicts)
 
 
 def demand_tables(
@@ -186,64 +188,6 @@ def note_of_direction(result: TimeHistoryResult) -> str:
     """The note on the direction of a history; empty where both components act."""
     both = result.motion.y is not None
     return direction_note([both], result.structure.planar_only)
-
-
-def neighbours_texts(
-    result: TimeHistoryResult, found: Sequence[Neighbour]
-) -> Iterator[str]:
-    """That this is one history, and how much it moves with its
-    motion and the impact law.
-    """
-    motions = [each for each in found if each.factor != 1.0]
-    if motions:
-        near = [each for each in motions if abs(each.factor - 1.0) < 0.0101]
-        turned = [each for each in found if each.turned]
-        beside = f"; turned by 1 deg {_reached(turned)}" if turned else ""
-        yield (
-            f"one history: with 1 % less or more motion {_reached(near)}; with up to 3 %"
-            f" {_reached(motions)}{beside}{_chaotic(result)}: judge by several records"
-        )
-    elif result.outcome != "failed":
-        yield (
-            f"one history: its {result.history['steps']} steps are too many to look at"
-            " motions 1 % weaker and stronger; judge by several records"
-        )
-    for other in (each for each in found if each.factor == 1.0 and not each.turned):
-        instead = (
-            f"{shown(other.restitution)} instead of {shown(result.structure.restitution)}"
-        )
-        yield (
-            f"one impact law: with podium.impact.loss {OTHER_LOSS:g} (e = {instead})"
-            f" {_reached([other])}"
-        )
-
-
-def _chaotic(result: TimeHistoryResult) -> str:
-    """Why neighbours part; empty of ends that roll without impacts."""
-    if result.structure.bearing.is_spherical:
-        return ""
-    passes = result.both_components and not result.structure.passes_smoothly
-    return f". Motions with {'passes' if passes else 'impacts'} are chaotic"
-
-
-def _reached(found: Sequence[Neighbour]) -> str:
-    """Rotations and base shears of those that stood, and how many did not."""
-    stood = [
-        each for each in found if not each.outcome.startswith(("overturned", "failed"))
-    ]
-    texts = []
-    if stood:
-        shears = [1e-3 * each.max_base_shear for each in stood]
-        texts = [f"{_range([each.rotation_ratio for each in stood])} theta_cr"]
-        texts += [f"base shear {_range(shears)} kN"] * any(shears)
-    for kind, word in (("overturned", "overturns"), ("failed", "fails")):
-        if count := sum(each.outcome.startswith(kind) for each in found):
-            texts.append(f"it {word}" + f" in {count} of {len(found)}" * (len(found) > 1))
-    return " and ".join(texts)
-
-
-def _range(values: Sequence[float]) -> str:
-    return " to ".join(dict.fromkeys((shown(min(values)), shown(max(values)))))
 
 
 def _rows(

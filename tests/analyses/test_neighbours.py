@@ -2,14 +2,28 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from paper_structures import block, known, needs_compiled_kernels, podium, waves
 
-from rpscli.analyses import timehistory as module
+from rpscli.analyses import neighbours as module
+from rpscli.analyses.neighbours import (
+    FACTORS,
+    NEAR,
+    nearest,
+    neighbours,
+    with_half_the_step,
+)
 from rpscli.analyses.settings import TimeHistorySettings
-from rpscli.analyses.timehistory import FACTORS, neighbours, time_history
+from rpscli.analyses.timehistory import time_history
+from rpscli.case.conditions import LIMITS, Condition
 from rpscli.model.impact import ImpactLaw
-from rpscli.report.timehistory import neighbours_texts, restitution_text
+from rpscli.report.limits import doubt_texts
+from rpscli.report.neighbours import neighbours_texts, step_text
+from rpscli.report.timehistory import restitution_text
+from rpscli.sweep.statistics.beside import beside_verdicts
+from rpscli.sweep.statistics.summary import Records, step_changes
+from rpscli.sweep.statistics.verdicts import judged_records
 
 pytestmark = needs_compiled_kernels
 
@@ -88,3 +102,100 @@ def test_floors_are_held_against_those_of_the_fixed_base(result):
     assert result.fixed_base_ratio == result.max_base_shear / fixed.base_shear < 1.0
     alone = time_history(block(0.3, 0.4), RECORD, SHORT)
     assert alone.floor_acceleration_over_fixed is alone.fixed_base_ratio is None
+
+
+def test_results_that_need_samples_are_those_of_histories_with_samples(result):
+    """As a limit on the roof asks for them; the others do not move by it."""
+    found = neighbours(result, ["max_roof_displacement"])
+    short = neighbours(result, ["rotation_ratio"])
+    assert [each.change for each in found] == [each.change for each in short]
+    near = [each for each in found if "max_roof_displacement" in each.demands]
+    assert [each.factor for each in near] == [*NEAR]
+    for each in near:
+        alone = time_history(podium(3), RECORD.scaled(each.factor), SHORT)
+        assert each.demands["max_roof_displacement"] == alone.max_roof_displacement
+    assert [each.rotation_ratio for each in found] == [
+        each.rotation_ratio for each in short
+    ]
+    finer = known(with_half_the_step(result, ["max_roof_displacement"]))
+    assert finer.demands["max_roof_displacement"] == pytest.approx(
+        result.max_roof_displacement, rel=1e-2
+    )
+
+
+def test_half_the_step_is_twice_the_accuracy(result):
+    finer = known(with_half_the_step(result))
+    alone = time_history(podium(3), RECORD, replace(SHORT, accuracy=2.0))
+    assert (finer.step, finer.change) == (0.5, "steps of half the length")
+    assert finer.rotation_ratio == alone.rotation_ratio
+    assert finer.max_base_shear == alone.max_base_shear
+    same = finer._replace(
+        max_base_shear=result.max_base_shear,
+        demands={name: getattr(result, name) for name in finer.demands},
+    )
+    assert step_text(result, same, {}) == ""
+    lift = {"max_lift": 2.0 * result.max_lift}
+    moved = same._replace(demands={**same.demands, **lift})
+    assert step_text(result, moved, {}) == ""
+    text = step_text(result, moved, {"max_lift": 0.03})
+    assert text.startswith("steps: steps of half the length change lift of the building")
+    assert "by 0.5 of it" in text
+    fallen = same._replace(outcome="overturned_rolling")
+    assert "survived or overturned rolling" in step_text(result, fallen, {})
+
+
+def test_what_is_small_beside_its_limit_is_no_change():
+    before = {"residual_drift": 1e-9, "max_rotation": 0.1}
+    after = {"residual_drift": 2e-9, "max_rotation": 0.1}
+    assert step_changes(before, after, {"residual_drift": 1e-3}) == {}
+    assert step_changes(before, after, {"residual_drift": 1e-6}) == {
+        "residual_drift": 0.5
+    }
+
+
+def test_a_verdict_is_reversed_by_the_motion_that_crosses_its_limit(result):
+    """A limit between the value and that with one percent more or less motion."""
+    near = nearest(result)
+    value = result.rotation_ratio
+    (other,) = [each for each in near if each.factor == 1.01]
+    assert other.rotation_ratio != value
+    limit = Condition("rotation_ratio", 0.5 * (value + other.rotation_ratio), "")
+    wide = Condition("rotation_ratio", 2.0 * max(value, other.rotation_ratio), "")
+    conditions = [limit, wide]
+    values = dict.fromkeys(LIMITS, np.nan) | {"rotation_ratio": value}
+    alone = judged_records(
+        Records.of([result.outcome], [values], ["a"]), ["a"], conditions
+    )
+    found, sure = beside_verdicts(alone, [near], ["a"], ["a"], conditions)
+    crossed = [
+        each.change
+        for each in near
+        if (each.rotation_ratio > limit.limit) != (value > limit.limit)
+    ]
+    ends = sorted(each.rotation_ratio for each in near)
+    assert "1.01 times the motion" in found.reversed_by
+    assert list(found.reversed_by) == crossed
+    assert found.near == (ends[0], ends[1])
+    assert found.word.endswith(", in doubt")
+    assert (sure.reversed_by, sure.word) == ((), "met")
+    assert found.exceeded == alone[0].exceeded  # it stays what it is
+    text, values_text = doubt_texts([found, sure])
+    assert "1.01 times the motion" in text
+    assert values_text.startswith("with 1 % less or more motion rotation_ratio ")
+    assert beside_verdicts(alone, [[]], ["a"], ["a"], conditions) == alone
+
+
+def test_what_was_not_followed_beside_is_not_judged(result):
+    """A limit on the roof, with neighbours that have no samples."""
+    conditions = [Condition("max_roof_displacement", 1e-9, "")]
+    values = dict.fromkeys(LIMITS, np.nan)
+    values["max_roof_displacement"] = result.max_roof_displacement
+    alone = judged_records(
+        Records.of([result.outcome], [values], ["a"]), ["a"], conditions
+    )
+    found = beside_verdicts(alone, [nearest(result)], ["a"], ["a"], conditions)
+    assert found == alone
+    followed = neighbours(result, ["max_roof_displacement"])
+    (sure,) = beside_verdicts(alone, [followed], ["a"], ["a"], conditions)
+    assert sure.reversed_by == ()
+    assert known(sure.near)[0] > 0.0

@@ -193,6 +193,32 @@ def test_limits_of_the_case(rps):
     assert (FOLDER / "rotation.png").is_file()
 
 
+def test_a_verdict_that_a_little_motion_reverses_says_so(rps, rps_json):
+    """Between the value and the one under 1 % more motion; for several records too."""
+    words = "timehistory", "small.yaml"
+    document = rps_json(*words)
+    near = [each for each in document["neighbours"] if each["factor"] == 1.01]
+    value, other = document["rotation_ratio"], near[0]["rotation_ratio"]
+    half = document["half_step"]
+    assert half["step"] == 0.5
+    assert half["rotation_ratio"] == pytest.approx(value, rel=1e-2)
+    code = 10 if value > other else 0
+    limit = f"limits.rotation_ratio={0.5 * (value + other)!r}"
+    doubtful = rps_json(*words, "--set", limit, exit_code=code)
+    verdict = doubtful["verdicts"][-1]
+    assert verdict["limit"] == pytest.approx(0.5 * (value + other))
+    assert "1.01 times the motion" in verdict["reversed_by"]
+    assert verdict["near"][0] <= other <= verdict["near"][1]
+    text = rps(*words, "--set", limit, "--force", exit_code=code).stdout
+    assert ", in doubt" in text
+    weak = "pulse:half_sine?amplitude=0.25g&period=0.6"
+    twice = "--record", weak, "--record", weak.replace("0.25", "0.3")
+    loose = rps_json(*words, *twice, "--set", "limits.drift_ratio=1")
+    (both,) = loose["sets"]
+    assert [each["reversed_by"] for each in both["verdicts"]] == [[], []]
+    assert len(loose["histories"][0]["neighbours"]) == 2
+
+
 def test_a_least_force_is_judged_from_below(rps):
     refused = rps(
         "timehistory", "small.yaml", "--fail-on", "min_column_force=1", exit_code=2

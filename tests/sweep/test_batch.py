@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -21,6 +22,7 @@ from rpscli.analyses.pushover import pushover
 from rpscli.analyses.result_quantities import SAMPLED
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
+from rpscli.case.conditions import Condition
 from rpscli.case.study.schema import PerturbSection, RangeSection, SampleSection
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.loading import load_components, load_record
@@ -311,14 +313,17 @@ def test_batches_hold_every_point_once_and_one_size_of_building(study_of):
 class Points:
     """What is asked of a table, its layout and its context: every fourth history is chaotic."""
 
-    def __init__(self, count):
+    def __init__(self, count, limits=()):
         self.failed = np.zeros(count, bool)
         self.layout = self.context = self
+        self.points_of_system = count
+        self.properties = [self]  # of its only system
+        self.limits = limits
         self.structure = podium(1, 0.15, FLAT, superstructure=building(1, 0.1))
         self.chaotic = waves(60.0, 0.01, 3.0 * self.structure.uplift_acceleration, seed=3)
         found = demands([self.history(number) for number in range(count)])
         self.outcomes = np.array([one.outcome for one in found])
-        names = "max_rotation", "max_base_shear"
+        names = "max_rotation", "max_base_shear", "max_lift"
         self.columns = {
             name: np.array([getattr(one, name) for one in found]) for name in names
         }
@@ -334,6 +339,21 @@ class Points:
 
 def notes(points):
     return list(step_notes(points))
+
+
+@needs_compiled_kernels
+def test_points_whose_limited_results_change_are_named():
+    """Of one outcome; what is small beside its limit decides nothing."""
+    after = demands([
+        replace(of, settings=replace(of.settings, accuracy=2.0))
+        for of in map(Points(4).history, range(4))
+    ])  # fmt: skip
+    for limit, named in ((1e-9, True), (1e9, False)):
+        points = Points(4, [Condition("max_lift", limit, "")])
+        points.outcomes = np.array([each.outcome for each in after])
+        (found,) = notes(points)
+        assert "max_rotation" in found
+        assert ("max_lift" in found) == named
 
 
 @needs_compiled_kernels

@@ -194,6 +194,8 @@ def verdict_document(keys: Sequence[str], verdict: Verdict) -> dict[str, Any]:
         "exceeded": verdict.exceeded,
         "shown": verdict.shown,
         "shown_by_recordings": verdict.shown_by,
+        "near": verdict.near,
+        "reversed_by": verdict.reversed_by,
         **({"interval": verdict.interval} if verdict.interval else {}),
     }
 

@@ -11,6 +11,7 @@ import numpy as np
 from rpscli.analyses.column_forces import OF_COLUMNS
 from rpscli.analyses.demand import demands
 from rpscli.analyses.largest_demands import Demand
+from rpscli.analyses.neighbours import FINER
 from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
 from rpscli.records.ground_motion import LEAST, MOST
 from rpscli.records.measures import measure_label
@@ -193,7 +194,10 @@ COMPUTED_AGAIN = 64
 """Points that are computed again."""
 
 PROMISED = 1e-4
-"""Of the largest rotation and base shear: what steps keep where motions converge."""
+"""Of the largest rotation and base shear, and of what has a limit: what steps keep where
+motions converge."""
+
+MAIN = ("max_rotation", "max_base_shear")
 
 NAMED = 5
 
@@ -207,7 +211,7 @@ def step_notes(table: PointTable) -> Iterator[str]:
     some = known[:: max(-(-len(known) // COMPUTED_AGAIN), 1)].tolist()
     requests = [layout.context.history(layout[number]) for number in some]
     finer = [
-        replace(of, settings=replace(of.settings, accuracy=2.0 * of.settings.accuracy))
+        replace(of, settings=replace(of.settings, accuracy=FINER * of.settings.accuracy))
         for of in requests
     ]
     after = zip(some, demands(finer), strict=True)
@@ -230,11 +234,31 @@ def _change(table: PointTable, number: int, after: Demand) -> tuple[float, str]:
     """
     if (outcome := table.outcomes[number]) != after.outcome:
         return math.inf, f"{number + 1} ({outcome} or {after.outcome})".replace("_", " ")
-    changes = {}
-    for name in ("max_rotation", "max_base_shear"):
-        old = float(table.columns[name][number])
-        new = getattr(after, name)
-        if abs(new - old) > PROMISED * max(old, new):
-            changes[name] = abs(new - old) / max(old, new)
+    before = {name: float(values[number]) for name, values in table.columns.items()}
+    known = {quantity.name for quantity in after.quantities} & before.keys()
+    found = {name: getattr(after, name) for name in known}
+    system = number // table.layout.points_of_system
+    limits = {each.name: each.limit for each in table.layout.properties[system].limits}
+    changes = step_changes(before, found, limits)
     words = ", ".join(f"{name} {change:.2g} of it" for name, change in changes.items())
     return max(changes.values(), default=0.0), f"{number + 1} ({words})"
+
+
+def step_changes(
+    before: Mapping[str, float | None],
+    after: Mapping[str, float | None],
+    limits: Mapping[str, float],
+) -> dict[str, float]:
+    """Relative changes that are larger than promised, of the main results and of those
+    that have a limit, of which what is small beside the limit says nothing.
+    """
+    changes = {}
+    for name in dict.fromkeys((*MAIN, *limits)):
+        old = before.get(name)
+        new = after.get(name)
+        if old is None or new is None:
+            continue
+        size = max(abs(old), abs(new))
+        if abs(new - old) > PROMISED * max(size, abs(limits.get(name, 0.0))):
+            changes[name] = abs(new - old) / size
+    return changes

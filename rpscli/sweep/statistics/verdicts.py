@@ -39,6 +39,10 @@ class Verdict:
     something of these records alone. It `fails` where it is exceeded or, if judged so
     `strictly`, not shown to be kept.
 
+    `near` are least and largest of the value under one percent less and more motion,
+    `reversed_by` the changes beside the histories that reverse the verdict; None where
+    none was looked at.
+
     On an annual rate `interval` is that of the rate [1/year], from those of the shares at
     all intensities at once, which is too wide; `beyond` is the share at the last one.
     """
@@ -54,6 +58,16 @@ class Verdict:
     strictly: bool = False
     interval: tuple[float, float] | None = None
     mean: float | None = None
+    near: tuple[float, float] | None = None
+    reversed_by: tuple[str, ...] | None = None
+
+    @property
+    def decisive(self) -> float:
+        """The value that is held against the limit: of a fractile, a mean, or the worst."""
+        if self.fractile is not None:
+            return self.fractile
+        of_mean = self.judged_by == "mean" and self.mean is not None
+        return self.mean if of_mean and self.mean is not None else self.value
 
     @property
     def judged_by(self) -> str | None:
@@ -69,7 +83,8 @@ class Verdict:
     @property
     def word(self) -> str:
         """As tables say it."""
-        return "EXCEEDED" if self.exceeded else "met" if self.shown else "met, not shown"
+        word = "EXCEEDED" if self.exceeded else "met" if self.shown else "met, not shown"
+        return f"{word}, in doubt" if self.reversed_by else word
 
     @property
     def fails(self) -> bool:
