@@ -48,6 +48,7 @@ RECORD = ("name", "source", "format", "description", "npts", "dt", "duration", "
 
 @click.command("check")
 @options.case_options
+@options.direction_option
 @click.option(
     "--draw",
     is_flag=True,
@@ -61,6 +62,7 @@ def command(
     request: options.CaseRequest,
     out: options.Output,
     *,
+    direction: str,
     draw: bool,
 ) -> None:
     """What follows from CASE: geometry, masses, statics, periods.
@@ -73,7 +75,8 @@ def command(
             "only --draw writes something; options of files and figures go with it"
         )
     given = inputs.read_case(request, out.terminal)
-    structure = given.case.structure
+    structure = given.seen(direction)
+    title = given.titled(direction)
     doubts: list[str] = []
     if structure.yields:
         from rpscli.analyses.pushover import pushover  # one that most cases do without
@@ -84,6 +87,7 @@ def command(
     document = {
         **heading("check"),
         "case": inputs.case_heading(given),
+        "direction": direction,
         **_derived(structure),
         "record": record,
         "limits": given.case.limits.model_dump(exclude_none=True),
@@ -92,14 +96,17 @@ def command(
     if draw:
         from rpscli.report.bundles import bearing_files
 
-        folder = inputs.case_folder(given, out, "check")
-        folder.add_all(bearing_files(structure, given.case.title, out.look))
+        folder = inputs.direction_folder(given, out, "check", direction)
+        folder.add_all(bearing_files(structure, title, out.look))
         inputs.write(folder, out.terminal)
         document["files"] = folder.files
     out.terminal.warn(doubts)
     limits = conditions_of(given.case.limits, "limits of the case")
     others = device_tables(structure, document), strength_tables(structure)
-    tables = chain(check_tables(document, limits, _unknown(structure, record)), *others)
+    unknown = _unknown(structure, record)
+    tables = chain(check_tables(document, title, limits, unknown), *others)
+    if direction == "x" and structure.superstructure_y is not None:
+        tables = chain(tables, ["in the direction x; --direction y shows the other"])
     out.terminal.finish(document, tables, error)
 
 
@@ -158,11 +165,12 @@ def _unknown(
 
 def check_tables(
     document: Mapping[str, Any],
+    title: str,
     limits: Sequence[Condition],
     unknown: Collection[str] = (),
 ) -> Iterator[Part]:
     """Leading quantities; geometry; masses, statics, periods; the record; the limits."""
-    yield Heading(document["case"]["title"])
+    yield Heading(title)
     pair = document["record"] and document["record"]["y"]
     dynamics = (*DYNAMICS, FIRST_PERIOD, *UPWARDS, *CONTACT)
     for rows in (LEADING, GEOMETRY, dynamics, COLUMN, BOTH if pair else ()):
@@ -251,7 +259,8 @@ def device_tables(
     for device, label, value, unit in found:
         number, name = large(value, unit)
         rows.append((device, label, "never" if number is None else shown(number), name))
-    yield Table.of_texts(("device", "", "value", "unit"), rows, words=2)
+    if rows:
+        yield Table.of_texts(("device", "", "value", "unit"), rows, words=2)
     if not (back := document["recentring"]):
         return
     swings = []

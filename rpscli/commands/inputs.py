@@ -23,6 +23,7 @@ from rpscli.units import as_written
 if TYPE_CHECKING:
     from rpscli.case.case import Case
     from rpscli.case.schema.scale_to import ScaleToSection
+    from rpscli.model.podium import PodiumStructure
     from rpscli.records.ground_motion import GroundMotion, MotionComponents
     from rpscli.records.recordings import Pair
 
@@ -37,6 +38,15 @@ class CaseInput:
 
     case: Case
     request: options.CaseRequest
+
+    def seen(self, direction: str) -> PodiumStructure:
+        """The structure as a motion along x or y meets it."""
+        structure = self.case.structure
+        return structure.in_y if direction == "y" else structure
+
+    def titled(self, direction: str) -> str:
+        """The title of the case, with the direction where this is not x."""
+        return f"{self.case.title}{', in y' * (direction == 'y')}"
 
     @property
     def file(self) -> Path | None:
@@ -72,6 +82,17 @@ def case_folder(
     run = CommandRun(command, case.name, given.file, case.digest, resolved, record_source)
     place = out.place or RESULTS / case.name / command
     return OutputFolder(place, run, force=out.force)
+
+
+def direction_folder(
+    given: CaseInput, out: options.Output, command: str, direction: str, **inputs: Any
+) -> OutputFolder:
+    """The folder of results in one direction: y has one beside that of x."""
+    if direction == "y":
+        inputs["direction"] = direction
+        place = out.place or RESULTS / given.case.name / f"{command}_y"
+        out = replace(out, place=place)
+    return case_folder(given, out, command, **inputs)
 
 
 def write(folder: OutputFolder, terminal: Terminal) -> None:
@@ -123,23 +144,28 @@ def conclude(
     terminal: Terminal,
     *,
     plane: bool = True,
+    direction: str | None = None,
     doubts: Sequence[str] = (),
 ) -> None:
     """Write the files of a command about one case, and give its
-    result with doubts about it.
+    result with doubts about it; of one `direction` where it may be asked for.
     """
     write(folder, terminal)
     terminal.warn(doubts)
     warnings = [*given.case.warnings, *folder.undrawn, *doubts]
-    if plane and given.case.structure.superstructure_y is not None:
-        warnings.append(
-            "superstructure.y is left out: this is the direction x; put --set"
-            " superstructure.period=... in its place for y"
+    in_y = given.case.structure.superstructure_y is not None and direction != "y"
+    if plane and in_y:
+        other = (
+            "put --set superstructure.period=... in its place for y"
+            if direction is None
+            else "--direction y shows the other"
         )
+        warnings.append(f"superstructure.y is left out: this is the direction x; {other}")
         terminal.warn(warnings[-1:])
     document = {
         **heading(folder.run.command),
         "case": case_heading(given),
+        **({} if direction is None else {"direction": direction}),
         **results,
         "warnings": warnings,
         "files": folder.files,

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterator
 from typing import TYPE_CHECKING
 
 import click
 
-from rpscli.commands.inputs import add_film, case_folder, conclude, film_of, read_case
+from rpscli.commands.inputs import (
+    add_film,
+    conclude,
+    direction_folder,
+    film_of,
+    read_case,
+)
 from rpscli.commands.shell import options
 from rpscli.errors import listed
 from rpscli.report.figures.look import FilmRequest
@@ -19,6 +26,7 @@ if TYPE_CHECKING:
 
 @click.command("modal")
 @options.case_options
+@options.direction_option
 @options.film_options
 @click.option(
     "--first-order", "paper", is_flag=True, help="Also show the values of the paper."
@@ -29,6 +37,7 @@ def command(
     out: options.Output,
     film: FilmRequest | None,
     *,
+    direction: str,
     paper: bool,
 ) -> None:
     """Modes of CASE in full contact and, linearised where they
@@ -37,17 +46,18 @@ def command(
     Writes modes.csv, shapes.csv, eigenvalues.csv and the figure modes.
     """
     given = read_case(request, out.terminal)
-    folder = case_folder(given, out, "modal")
+    folder = direction_folder(given, out, "modal", direction)
+    title = given.titled(direction)
     from rpscli.analyses.modal import modal
     from rpscli.report.bundles import modal_files
 
-    result = modal(given.case.structure)
-    folder.add_all(modal_files(result, given.case.title, out.look))
+    result = modal(given.seen(direction))
+    folder.add_all(modal_files(result, title, out.look))
     if film is not None:
-        draw = film_of("modes")(result, given.case.title, film, out.look)
+        draw = film_of("modes")(result, title, film, out.look)
         add_film(folder, film, draw, out)
-    tables = _tables(result, given.case.title, () if paper else (FIRST_ORDER,))
-    conclude(given, folder, result.results(), tables, out.terminal)
+    tables = _tables(result, title, () if paper else (FIRST_ORDER,))
+    conclude(given, folder, result.results(), tables, out.terminal, direction=direction)
 
 
 ORDER = (
@@ -58,6 +68,9 @@ NEVER_LIFTS = (
     "Both states are linearised exactly where they begin: rolling at 0, rocking at beta;"
     " ends without a flat part are never in full contact."
 )
+SAME = 0.01
+"""Of a frequency and a damping ratio: vertical modes that change less are told in a line."""
+
 FIRST_ORDER = "first order"
 """Head of the paper's values: small alpha, rocking continued to 0."""
 
@@ -78,6 +91,13 @@ def _tables(result: ModalResult, title: str, left_out: Collection[str]) -> Itera
     if result.vertical is not None:
         yield _mode_table("vertical", result.vertical)
     yield _vibration_table(result).without(left_out)
+    if same := _unchanged(result):
+        names = listed([name.removesuffix("_vertical") for name in same], "and")
+        most = 100.0 * max(same.values())
+        yield (
+            f"Vertical modes when {names} differ from those above by at most"
+            f" {shown(most, 2)} % in frequency and damping."
+        )
     at = [
         f"{name.replace('_', ' ')} {measured(first['base_shear'], 'N')} (storey"
         f" {first['storey']})"
@@ -116,16 +136,38 @@ def _full_contact(result: ModalResult) -> Iterator[Part]:
 
 
 def _vibration_table(result: ModalResult) -> Table:
-    """Vibrations of the building on uplifted columns."""
+    """Vibrations of the building on uplifted columns; of vertical ones only those that
+    uplift changes.
+    """
     rows = []
     for name, uplifted in result.vibrations():
+        if name in _unchanged(result):
+            continue
         for i, (w, xi, ratio, over, *first) in enumerate(uplifted.tolist(), 1):
             percent = shown(100.0 * xi, 3), shown(100.0 * first[1], 3)
-            cells = shown(w), shown(first[0]), shown(ratio), *percent, shown(over)
+            period = shown(2.0 * math.pi / w)
+            cells = shown(w), period, shown(first[0]), shown(ratio), *percent, shown(over)
             rows.append((name.replace("_", ", "), str(i), *cells))
-    heads = "rad/s", FIRST_ORDER, "of fixed base", "xi %", FIRST_ORDER, "of fixed base"
+    of_fixed = "of fixed base"
+    heads = "rad/s", "T s", FIRST_ORDER, of_fixed, "xi %", FIRST_ORDER, of_fixed
     state = "on bearings" if result.structure.bearing.is_spherical else "uplifted"
     return Table.of_texts((state, "mode", *heads), rows, words=1, keys=2)
+
+
+def _unchanged(result: ModalResult) -> dict[str, float]:
+    """Blocks of vertical modes that are nearly those of full contact, and their largest
+    change of frequency or damping.
+    """
+    changes = {
+        name: [abs(ratio - 1.0) for ratio in modes[:, 2:4].ravel().tolist()]
+        for name, modes in result.vibrations()
+        if name.endswith("_vertical")
+    }
+    return {
+        name: max(found)
+        for name, found in changes.items()
+        if all(change <= SAME for change in found)  # not a number without damping
+    }
 
 
 def _mode_table(state: str, modes: FixedBaseModes) -> Table:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from rpscli.analyses.result_quantities import PUSHOVER
-from rpscli.commands.inputs import case_folder, conclude, read_case
+from rpscli.commands.inputs import conclude, direction_folder, read_case
 from rpscli.commands.shell import options
 from rpscli.errors import UsageError
 from rpscli.report.derived import NEVER_LIFTS
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 @click.command("pushover")
 @options.case_options
+@options.direction_option
 @click.option(
     "--pattern",
     "patterns",
@@ -36,6 +37,7 @@ def command(
     request: options.CaseRequest,
     out: options.Output,
     patterns: tuple[str, ...],
+    direction: str,
 ) -> None:
     """Restoring force of the podium of CASE, and capacity curves of the whole structure.
 
@@ -50,15 +52,21 @@ def command(
     if patterns and given.case.structure.superstructure is None:
         raise UsageError("--pattern: the case has no storeys to push at")
     asked = [_pattern(text) for text in patterns] or PATTERNS
-    folder = case_folder(given, out, "pushover", patterns=list(asked))
+    folder = direction_folder(given, out, "pushover", direction, patterns=list(asked))
+    title = given.titled(direction)
     try:
-        result = pushover(given.case.structure, patterns=asked)
+        result = pushover(given.seen(direction), patterns=asked)
     except ValueError as error:
         raise UsageError(f"--pattern: {error}") from None
-    folder.add_all(pushover_files(result, given.case.title, out.look))
-    tables = _tables(result, given.case.title)
+    folder.add_all(pushover_files(result, title, out.look))
     conclude(
-        given, folder, result.results(), tables, out.terminal, doubts=result.warnings
+        given,
+        folder,
+        result.results(),
+        _tables(result, title),
+        out.terminal,
+        direction=direction,
+        doubts=result.warnings,
     )
 
 
@@ -115,9 +123,11 @@ def _yielding_tables(result: PushoverResult) -> Iterator[Part]:
         for storey, force in sorted(curve.yielding.items(), key=lambda item: item[1])
     ]
     if not rows:
-        yield "columns lift first: pushed slowly no storey ever yields, only in motion"
+        first = "roll" if result.structure.bearing.is_spherical else "lift"
+        yield f"columns {first} first: pushed slowly no storey ever yields, only in motion"
         return
     heads = "pattern", "storey yields", "at floor forces of kN", "of uplift force"
-    yield Table.of_texts(heads, rows)
+    table = Table.of_texts(heads, rows)
+    yield table if result.uplift_force else table.without(heads[-1:])
     if building.hardening == 0.0:
         yield "without hardening a curve ends where the first storey yields: it is a mechanism then"

@@ -227,6 +227,13 @@ class PodiumStructure(Shown):
         )
 
     @cached_property
+    def in_y(self) -> PodiumStructure:
+        """The structure as a motion along y meets it: the building and the rows of that
+        direction.
+        """
+        return replace(self.across, rows=self.rows_y, rows_y=self.rows)
+
+    @cached_property
     def upwards(self) -> PodiumStructure | None:
         """The podium under what vibrates upwards; None where floors ride on the cap
         beam.

@@ -120,8 +120,8 @@ CAPTIONS = {
     ),
     "orbit": (
         "From above: the path of the cap beam over the ground, and the moment of ground"
-        " and building about the contacts, beyond whose circle upright columns uplift;"
-        " time in colour."
+        " and building about the contacts, beyond whose circle upright columns with a"
+        " flat part uplift; time in colour."
     ),
     "column": (
         "The most loaded column when its moment is largest: forces at its ends, to a"

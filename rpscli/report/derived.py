@@ -549,7 +549,15 @@ def strength_tables(structure: PodiumStructure) -> Iterator[Part]:
     """Strength of each storey beside its shear at uplift, the roof on
     top; in y if that differs.
     """
-    heads = "strength kN", "of V_st", "shear at uplift kN", "under slow ground motion"
+    first, begins = "lift", "uplift"
+    if structure.bearing.is_spherical:
+        first, begins = "roll", "rolling"
+    heads = (
+        "strength kN",
+        "of V_st",
+        f"shear at {begins} kN",
+        "under slow ground motion",
+    )
     for way, strengths in strengths_by_way(structure).items():
         rows = [
             (
@@ -557,7 +565,9 @@ def strength_tables(structure: PodiumStructure) -> Iterator[Part]:
                 shown(1e-3 * each.strength),
                 "" if each.strength_ratio is None else shown(each.strength_ratio),
                 shown(1e-3 * each.shear_at_uplift),
-                "columns lift first" if each.uplift_first else "yields BEFORE uplift",
+                f"columns {first} first"
+                if each.uplift_first
+                else f"yields BEFORE {begins}",
                 shown(1e3 * each.yield_drift),
             )
             for storey, each in enumerate(strengths, 1)

@@ -22,7 +22,6 @@ from rpscli.analyses.result_quantities import (
 )
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
-from rpscli.errors import listed
 from rpscli.model.podium import PodiumStructure
 from rpscli.report.column_table import column_table
 from rpscli.report.derived import UPPER
@@ -226,14 +225,14 @@ def _of_storey(result: TimeHistoryResult, units: Units) -> Iterator[Row]:
 def _of_building(result: TimeHistoryResult, units: Units) -> Iterator[Row]:
     if (fixed := result.fixed_base) is None:
         return
-    ratio = ""
-    if not result.structure.bearing.is_spherical:  # which has no V_st
-        ratio = f"{shown(result.base_shear_ratio)} V_st"
+    spherical = result.structure.bearing.is_spherical  # never lifts
+    ratio = "" if spherical else f"{shown(result.base_shear_ratio)} V_st"
     yield from _rows(result, "max_base_shear", normalised=ratio, fixed=fixed.base_shear)
     if result.both_components:
         yield "  in x, in y", _ways(result, "max_base_shear", units), "", ""
     yield from _with_dashpots(result)
-    yield from _rows(result, "uplift_shear_ratio", "fixed_base_ratio")
+    yield from _rows(result, *["uplift_shear_ratio"] * (not spherical))
+    yield from _rows(result, "fixed_base_ratio")
     largest = float(np.max(fixed.floor_accelerations))
     yield from _rows(result, "max_floor_acceleration", fixed=largest)
     further = (
@@ -344,7 +343,7 @@ def _ways(result: TimeHistoryResult, name: str, units: Units) -> str:
 
 def _passes(result: TimeHistoryResult, units: Units) -> Iterator[Row]:
     """Uplifts and impacts, or passes near upright: their number, the
-    closest, and the shortest.
+    closest, and the shortest; none of ends that never lift.
     """
     if result.structure.bearing.is_spherical:
         pass  # they roll from rest, without uplift and impacts

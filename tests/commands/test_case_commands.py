@@ -143,9 +143,8 @@ def test_modal_and_pushover_say_where_storeys_yield(rps, rps_json):
     rolls = ("--set", f"podium.{end}", "--set", "superstructure.yield={shears: 100 kN}")
     rolls = (*rolls, "--set", "limits.base_shear_ratio=null")
     rows = rps("pushover", case, *rolls).stdout.splitlines()
-    assert ["uniform", "1", "100.0", "-"] in [
-        row.split() for row in rows
-    ]  # nothing lifts there
+    cells = [row.split() for row in rows]
+    assert ["uniform", "1", "100.0"] in cells  # nothing lifts there
 
 
 def test_limits_that_pairs_refuse_are_told_before_anything_is_computed(

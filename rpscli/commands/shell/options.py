@@ -295,6 +295,17 @@ def _output(
     return Output(terminal, place, force, _look(figures, columns, style_file))
 
 
+direction_option = click.option(
+    "--direction",
+    type=click.Choice(["x", "y"]),
+    default="x",
+    help=(
+        "The horizontal direction that is looked at: y has the building of"
+        " superstructure.y and the rows of podium.plan.y; x by default."
+    ),
+)
+
+
 _WRITTEN = (
     click.option(
         "-o",
