@@ -77,13 +77,8 @@ def command(
     given = inputs.read_case(request, out.terminal)
     structure = given.seen(direction)
     title = given.titled(direction)
-    doubts: list[str] = []
-    if structure.yields:
-        from rpscli.analyses.pushover import pushover  # one that most cases do without
-
-        doubts += pushover(structure).warnings
     record, error = _record(given.case)
-    doubts += record["warnings"] if record else []
+    doubts = [*_of_yielding(structure), *(record["warnings"] if record else [])]
     document = {
         **heading("check"),
         "case": inputs.case_heading(given),
@@ -102,12 +97,21 @@ def command(
         document["files"] = folder.files
     out.terminal.warn(doubts)
     limits = conditions_of(given.case.limits, "limits of the case")
-    others = device_tables(structure, document), strength_tables(structure)
+    others = chain(device_tables(structure, document), strength_tables(structure))
+    other = ["in the direction x; --direction y shows the other"]
+    other *= direction == "x" and structure.superstructure_y is not None
     unknown = _unknown(structure, record)
-    tables = chain(check_tables(document, title, limits, unknown), *others)
-    if direction == "x" and structure.superstructure_y is not None:
-        tables = chain(tables, ["in the direction x; --direction y shows the other"])
+    tables = chain(check_tables(document, title, limits, unknown), others, other)
     out.terminal.finish(document, tables, error)
+
+
+def _of_yielding(structure: PodiumStructure) -> Iterable[str]:
+    """Warnings of a building whose storeys yield when it is pushed."""
+    if not structure.yields:
+        return ()
+    from rpscli.analyses.pushover import pushover  # one that most cases do without
+
+    return pushover(structure).warnings
 
 
 def _derived(structure: PodiumStructure) -> dict[str, Any]:
@@ -241,22 +245,8 @@ def device_tables(
     """
     if not structure.devices:
         return
-    begins = "uplift force at the cap beam", "uplift acceleration, quasi-static"
-    if structure.bearing.is_spherical:
-        begins = "force at the cap beam that moves it", "acceleration that moves it"
-    force = document["uplift_force_with_devices"]
-    acceleration = document["uplift_acceleration_with_devices"]
-    found = [
-        *(
-            (f"{index} {device.kind}", item.label, item.value, item.unit)
-            for index, device in enumerate(structure.devices)
-            for item in device.consequences(structure)
-        ),
-        ("all", begins[0], force, "N"),
-        ("all", begins[1], acceleration, "m/s2"),
-    ]
     rows = []
-    for device, label, value, unit in found:
+    for device, label, value, unit in _of_devices(structure, document):
         number, name = large(value, unit)
         rows.append((device, label, "never" if number is None else shown(number), name))
     if rows:
@@ -279,6 +269,20 @@ def device_tables(
     )
     yield Table.of_texts(heads, swings)
     yield from _about_returns(back)
+
+
+def _of_devices(
+    structure: PodiumStructure, document: Mapping[str, Any]
+) -> Iterator[tuple[str, str, float | None, str]]:
+    """Devices, counted from 1, with their numbers, and those of all together."""
+    for number, device in enumerate(structure.devices, 1):
+        for item in device.consequences(structure):
+            yield f"{number} {device.kind}", item.label, item.value, item.unit
+    begins = "uplift force at the cap beam", "uplift acceleration, quasi-static"
+    if structure.bearing.is_spherical:
+        begins = "force at the cap beam that moves it", "acceleration that moves it"
+    yield "all", begins[0], document["uplift_force_with_devices"], "N"
+    yield "all", begins[1], document["uplift_acceleration_with_devices"], "m/s2"
 
 
 def _end_of_return(row: Mapping[str, Any]) -> str:

@@ -484,7 +484,7 @@ def _devices_table(result: TimeHistoryResult, shown_in: Units) -> Table:
         ]
         left = demand.remaining_prestress
         prestress = "" if left is None else f"prestress {measured(left, 'N')} left"
-        rows.append([f"{index} {demand.kind}", *texts, prestress])
+        rows.append([f"{index + 1} {demand.kind}", *texts, prestress])
     return Table.of_texts(["device", *units, ""], rows)
 
 

@@ -184,7 +184,8 @@ def test_devices_are_in_the_drawing():
         tendon.get_color(),
         "#D55E00",
     }  # nor that of contacts
-    assert {*axes.get_legend_handles_labels()[1]} == {"stop", "tendon", "friction damper"}
+    named = {"contact", "stop", "stop, reached", "tendon", "friction damper"}
+    assert {*axes.get_legend_handles_labels()[1]} == named
     axes = Figure().subplots()
     draw_bearing(axes, made, 0.1)
     assert axes.get_xlim()[1] > view.half + 0.2  # the stops are in view

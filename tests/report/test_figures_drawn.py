@@ -204,14 +204,31 @@ def equipped():
     return time_history(made, record, TimeHistorySettings(free_vibration=2.0))
 
 
+def test_a_stop_that_is_not_reached_says_so(equipped):
+    """Its gap is drawn, and how far it was away; of one that is reached only the gap."""
+    largest = np.nanmax(np.abs(equipped.trace.devices.displacement[:, 1]))
+    gap = equipped.structure.devices[1].gap
+    assert largest > gap
+    panels = drawn(devices_figure, equipped, "").axes
+    assert f"gap {gap:.3g} m" in [text.get_text() for text in panels[1].texts]
+    far = replace(equipped.structure, devices=(replace(DEVICES[1], gap=9.0 * largest),))
+    missed = time_history(far, equipped.record, TimeHistorySettings(free_vibration=2.0))
+    reached = np.nanmax(np.abs(missed.trace.devices.displacement[:, 0]))
+    assert reached < 9.0 * largest
+    (axes, *_) = drawn(devices_figure, missed, "").axes
+    words = [text.get_text() for text in axes.texts]
+    assert f"not reached:\n{reached:.3g} m" in words
+    assert 9.0 * largest in [line.get_xdata()[0] for line in axes.lines[1:]]
+
+
 def test_loops_of_devices(equipped):
     trace = equipped.trace.devices
     panels = drawn(devices_figure, equipped, "").axes
     names = [
-        "device 0: friction",
-        "device 1: stop",
-        "device 2: tendon",
-        "device 3: viscous",
+        "device 1: friction",
+        "device 2: stop",
+        "device 3: tendon",
+        "device 4: viscous",
     ]
     assert [axes.get_title() for axes in panels[:4]] == names
     for index, axes in enumerate(panels[:4]):
@@ -258,7 +275,9 @@ def test_loops_of_storeys_that_yield():
         draw_loop(panels[0], KINDS["rolls"](), 1)
     with pytest.raises(UsageError, match="is none of the storeys; there are 1, 2"):
         draw_loop(panels[0], result, 3)
-    assert shown_floors(9, MOST_STOREYS) == [1, 3, 4, 6, 7, 9]
+    assert shown_floors(7, MOST_STOREYS[True]) == [1, 2, 3, 4, 5, 6, 7]
+    assert shown_floors(9, MOST_STOREYS[False]) == [*range(1, 10)]
+    assert shown_floors(20, MOST_STOREYS[True])[::7] == [1, 20]
 
 
 def test_moment(result):

@@ -1,6 +1,6 @@
 """Figures under both components: a motion in one plane, turned, looks as it does in its own."""
 
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -21,6 +21,7 @@ from report.small_results import (
 from rpscli import figures
 from rpscli.analyses.trace import DirectionTrace
 from rpscli.errors import UsageError
+from rpscli.model.devices import Stop
 from rpscli.report.figures import history
 from rpscli.report.figures.floors import draw_accelerations
 from rpscli.report.figures.look import FilmRequest
@@ -124,6 +125,10 @@ def test_orbit_and_its_circles():
     across = points @ (-np.sin(ANGLE), np.cos(ANGLE))
     assert np.abs(across).max() < 1e-12
     assert np.hypot(*points.T).max() == np.abs(trace.cap_beam_displacement).max()
+    stopped = replace(made, devices=(Stop(3.0, 1e6), Stop(0.1 * moved, 1e6)))
+    orbit, *_ = drawn(history.orbit_figure, replace(pair, structure=stopped), "").axes
+    assert circles(orbit) == pytest.approx([moved, 0.1 * moved, 3.0])
+    assert f"stop: {0.1 * moved:.3g} m" in legend(orbit)
     assert orbit.get_aspect() == 1.0
     assert (orbit.get_xlabel(), orbit.get_ylabel()) == (
         "cap beam $u_{b,x}$ [m]", "cap beam $u_{b,y}$ [m]",

@@ -18,7 +18,7 @@ from rpscli.model.bearing import Bearing
 from rpscli.model.contact import Bed
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.report.figures import style
-from rpscli.report.figures.history import record_name
+from rpscli.report.figures.history import named_device, record_name
 
 if TYPE_CHECKING:
     from matplotlib.lines import Line2D
@@ -158,6 +158,7 @@ class SceneDevices:
             pushed = max(side * shift - gap, 0.0)
             post.set_data([at, at + side * pushed], [0.0, 1.06 * self.base])
             post.set_color(style.RED if pushed else style.BLACK)
+            post.set_label("stop, reached" if pushed else "stop")
         for foot, tendon in zip(self.feet, self.tendons, strict=False):
             tendon.set_data([foot, foot + shift], [0.0, self.base + lift])
         if self.brace is not None:
@@ -182,6 +183,7 @@ class BearingView:
         if structure.cap_beam_mass > 0.0:
             self.beam = axes.fill([], [], fc=BEAM, ec=style.BLACK, lw=0.7)[0]
         look: dict[str, Any] = {"color": style.RED, "ms": 4.0, "zorder": 4.0}
+        look["label"] = "contact"
         self.contacts = axes.plot([], [], "o", **look)[0]
         self.thrust = axes.plot([], [], ls=(0, (5, 3)), lw=0.7, color=style.RED)[0]
         self.devices = SceneDevices(
@@ -505,6 +507,25 @@ def devices_figure(result: TimeHistoryResult, title: str, figure: style.Figure) 
         axes.locator_params(axis="x", nbins=3 if narrow else 5)
 
 
+def _draw_gap(axes: style.Axes, strokes: Array, gap: float) -> None:
+    """The gap of a stop, to the sides to which its stroke goes; the words, if it is not
+    reached.
+    """
+    largest = float(np.nanmax(np.abs(strokes), initial=0.0))
+    look: dict[str, Any] = {"color": style.RED, "ls": "--", "lw": 1.0}
+    for side in (1.0, -1.0)[: 1 + bool((strokes < 0.0).any())]:
+        axes.axvline(side * gap, **look)
+    beside: dict[str, Any] = {"ha": "right", "va": "top", "rotation": 90.0}
+    beside |= {"transform": axes.get_xaxis_transform(), "fontsize": style.small()}
+    axes.text(gap, 0.98, f"gap {gap:.3g} m", color=style.RED, **beside)
+    if largest < gap:
+        axes.set(ylim=(-0.1, 1.0), yticks=[0.0])
+        words = f"not reached:\n{largest:.3g} m"
+        place: dict[str, Any] = {"ha": "center", "va": "center"}
+        place |= {"transform": axes.transAxes, "fontsize": style.small()}
+        axes.text(0.45, 0.4, words, **place)
+
+
 def draw_device(axes: style.Axes, result: TimeHistoryResult, index: int) -> None:
     """Resistance of a device against displacement, of tendons
     tension against elongation.
@@ -517,9 +538,9 @@ def draw_device(axes: style.Axes, result: TimeHistoryResult, index: int) -> None
     factor, prefix = style.engineering(float(np.nanmax(np.abs(force), initial=0.0)))
     axes.plot(trace.displacement[:, index], factor * force, color=style.BLUE, lw=0.8)
     style.cross(axes)
-    axes.set_title(
-        f"device {index}: {device.kind.replace('_', ' ')}", fontsize=style.small()
-    )
+    if isinstance(device, laws.Stop):
+        _draw_gap(axes, trace.displacement[:, index], device.gap)
+    axes.set_title(named_device(index, device.kind), fontsize=style.small())
     stroke = (
         drawn.stroke if result.motion.y is None else drawn.stroke.replace("u_b", "|u_b|")
     )

@@ -169,15 +169,21 @@ def draw_floor_spectrum(
     axes.set_ylabel(f"floor {floor}, {SPECTRA[name]}")
 
 
-MOST_STOREYS = 6  # in the picture; columns of timehistory.csv have all
+MOST_STOREYS = {True: 8, False: 9}
+"""In the picture, in a narrow one and a wide one: as many as a page has room for. Columns
+of timehistory.csv have all."""
 
 
 def loops_figure(result: TimeHistoryResult, title: str, figure: style.Figure) -> None:
     """Shear over drift of storeys from the first one up, to one scale."""
-    storeys = shown_floors(result.structure.storeys, MOST_STOREYS)
-    columns = min(len(storeys), 2 if style.narrow(figure) else 3)
+    narrow = style.narrow(figure)
+    storeys = shown_floors(result.structure.storeys, MOST_STOREYS[narrow])
+    columns = min(len(storeys), 2 if narrow else 3)
     rows = -(-len(storeys) // columns)
-    style.begin(figure, (title, record_name(result), result.sampling), 0.9 + 2.1 * rows)
+    words = [title, record_name(result), result.sampling]
+    if len(storeys) < result.structure.storeys:
+        words.append(f"{len(storeys)} of {result.structure.storeys} storeys")
+    style.begin(figure, words, 0.9 + 2.1 * rows)
     draws = [partial(draw_loop, result=result, storey=storey) for storey in storeys]
     style.legend_below(
         figure, style.grid(figure, draws, columns, sharex=True, sharey=True)

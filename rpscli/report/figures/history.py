@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.trace import Trace
 from rpscli.errors import UsageError
+from rpscli.model.devices import Stop
 from rpscli.report.figures import style
 
 if TYPE_CHECKING:
@@ -251,6 +252,9 @@ def draw_azimuth(axes: style.Axes, result: TimeHistoryResult) -> None:
 QUARTER = 90.0  # turns between two samples that are larger are not drawn as a line [deg]
 
 
+ROOM = 1.12  # about what is farthest out
+
+
 def levels(
     result: TimeHistoryResult, near: float = NEAR
 ) -> tuple[list[tuple[str, float, str, str]], float]:
@@ -262,7 +266,7 @@ def levels(
     found = [("\\beta", beta, ":", style.PINK)] if beta > 0.0 else []
     found.append(("\\theta_{cr}", critical, "--", style.RED))
     largest = max(result.max_rotation, 1e-3 * critical)
-    return found, 1.12 * max(
+    return found, ROOM * max(
         largest, *(v for _, v, *_ in found if v < near * largest), 0.0
     )
 
@@ -385,6 +389,11 @@ MOST = 20_000
 """Samples of an area at most: matplotlib thins out lines, not areas."""
 
 
+def named_device(index: int, kind: str) -> str:
+    """A device as people count, from 1."""
+    return f"device {index + 1}: {kind.replace('_', ' ')}"
+
+
 def draw_energy(axes: style.Axes, result: TimeHistoryResult) -> None:
     """Input against what is stored and lost on the way, one on top of the other."""
     trace = result.trace
@@ -393,8 +402,7 @@ def draw_energy(axes: style.Axes, result: TimeHistoryResult) -> None:
     factor, prefix = style.engineering(float(largest))
     passes = result.both_components and not result.structure.passes_smoothly
     names = [
-        f"device {i}: {each.kind.replace('_', ' ')}"
-        for i, each in enumerate(made.devices)
+        named_device(index, device.kind) for index, device in enumerate(made.devices)
     ]
     parts = [
         *[(trace.energy_damped, "damped in the building", style.SKY)]
@@ -463,13 +471,20 @@ def draw_path(axes: style.Axes, result: TimeHistoryResult) -> LineCollection:
             "a panel of orbit: needs a history under both horizontal components"
         )
     drawn = (trace.cap_beam_displacement, trace.y.cap_beam_displacement)
-    found, reach = levels(result, CIRCLE_NEAR)
-    ends = result.structure.path(np.array([reach, *(value for _, value, *_ in found)]))[1]
+    found, farthest = levels(result, CIRCLE_NEAR)
+    ends = result.structure.path(
+        np.array([farthest, *(value for _, value, *_ in found)])
+    )[1]
     circles = [
         (float(u), f"${symbol}$: {u:.3g} m", line, colour)
         for u, (symbol, _, line, colour) in zip(ends[1:], found, strict=True)
     ]
-    lines = _in_colours(axes, result, drawn, float(ends[0]), circles)
+    devices = result.structure.devices
+    gaps = sorted({float(device.gap) for device in devices if isinstance(device, Stop)})
+    circles += [(gap, f"stop: {gap:.3g} m", "-.", style.BLACK) for gap in gaps]
+    near = [gap for gap in gaps if gap < CIRCLE_NEAR * result.max_cap_beam_displacement]
+    reach = max(float(ends[0]), *(ROOM * gap for gap in near), 0.0)
+    lines = _in_colours(axes, result, drawn, reach, circles)
     axes.set(xlabel="cap beam $u_{b,x}$ [m]", ylabel="cap beam $u_{b,y}$ [m]")
     return lines
 
