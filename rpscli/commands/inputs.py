@@ -105,6 +105,8 @@ def write(folder: OutputFolder, terminal: Terminal) -> None:
     terminal.note(f"written to {folder.folder}{note}")
     if folder.removed:
         terminal.note(f"removed, of an earlier run: {', '.join(sorted(folder.removed))}")
+    if folder.kept:
+        terminal.note(f"kept, of an earlier run: {', '.join(folder.kept)}")
 
 
 Draw = Callable[[Callable[[int, int], None]], bytes]

@@ -28,9 +28,10 @@ from rpscli.report.study.registry import asked
 from rpscli.report.study.statistics import summary_document, verdict_document
 from rpscli.report.table import Heading, Part, Table
 from rpscli.studies import Study, StudyInterrupted, StudyResult
+from rpscli.sweep.estimate import estimated_seconds
 from rpscli.sweep.names import labels
 from rpscli.sweep.points import StudyPoints
-from rpscli.sweep.run import Progress, Start, estimated_seconds
+from rpscli.sweep.run import Progress, Start
 from rpscli.sweep.store import Store
 from rpscli.sweep.systems import balance_note
 
@@ -275,6 +276,8 @@ def swept(
         if command == "sweep":
             folder.add_all(found.files.items())
             store.require()
+            # The same points had other reports, or a report that comes again failed.
+            folder.keeps_earlier = choices.report_only
             write(folder, out.terminal)
     return Swept(result, found, studies.error_of(result, found), folder)
 

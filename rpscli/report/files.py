@@ -326,6 +326,8 @@ class OutputFolder:
         self.force = force
         self.contents: dict[Path, Content] = {}
         self.removed: list[str] = []
+        self.keeps_earlier = False  # files of an earlier run that this one has not
+        self.kept: list[str] = []
         self._earlier = self._claimed()
 
     @property
@@ -372,6 +374,9 @@ class OutputFolder:
                         f"{path} exists and is not an earlier output of this command"
                     )
             run = self.folder / RUN_FILE
+            made = {self._known_as(path) for path in (*self.contents, run)}
+            stale = sorted(name for name in self._own - made if self._stands(name))
+            self.kept = stale if self.keeps_earlier else []
             results = {
                 p: c for p, c in self.contents.items() if not isinstance(c, Drawing)
             }
@@ -384,15 +389,12 @@ class OutputFolder:
                 "record": self._subject["record"],
                 "inputs": self.run.inputs,
                 "versions": versions(),
-                "files": [self._known_as(path) for path in self.contents],
+                "files": [*(self._known_as(path) for path in self.contents), *self.kept],
             }
             write_whole({**results, run: json_text(document).encode()})
-            for stale in self._own - {
-                self._known_as(path) for path in (*self.contents, run)
-            }:
-                if Path(stale).name == stale and (self.folder / stale).is_file():
-                    (self.folder / stale).unlink()  # never outside the folder
-                    self.removed.append(stale)
+            for name in () if self.keeps_earlier else stale:
+                (self.folder / name).unlink()
+                self.removed.append(name)
             for path, drawing in self.contents.items():
                 if isinstance(drawing, Drawing):
                     path.unlink(
@@ -400,6 +402,10 @@ class OutputFolder:
                     )  # that of an earlier run shows other results
                     if drawn := drawing():
                         write_whole({path: drawn})
+
+    def _stands(self, name: str) -> bool:
+        """True of a file in the folder itself: what stands elsewhere is left alone."""
+        return Path(name).name == name and (self.folder / name).is_file()
 
     @property
     def _subject(self) -> dict[str, Any]:

@@ -29,8 +29,6 @@ from typing import Any
 
 import numpy as np
 
-from rpscli.analyses.demand import WORTH_LANES
-from rpscli.analyses.kernels.systems import most_seconds
 from rpscli.case.text.document import shown
 from rpscli.errors import Refused, RpsError, UsageError
 from rpscli.sweep.evaluation import (
@@ -176,6 +174,9 @@ of the kernel busy but at its end."""
 
 SMALLEST_BATCH = 8
 
+EARLY_BATCH = 32
+"""Of the first two batches of each thread."""
+
 WHOLE_BATCH = 16
 """Whole histories, which are followed one by one."""
 
@@ -202,10 +203,16 @@ def batches(
     order = np.lexsort((records, block[systems], -storeys[systems]))
     numbers = numbers[order]
     systems = systems[order]
+    early = 2 * jobs
     changes = np.diff(storeys[systems]) | np.diff(block[systems])
     for part in np.split(numbers, np.flatnonzero(changes) + 1):
-        for first in range(0, len(part), size):
-            yield [layout[number] for number in part[first : first + size].tolist()]
+        first = 0
+        while first < len(part):
+            # Small ones come first, so that a rate is soon known.
+            count = size if early <= 0 else min(size, EARLY_BATCH)
+            early -= 1
+            yield [layout[number] for number in part[first : first + count].tolist()]
+            first += count
 
 
 HEARING = 0.2
@@ -455,56 +462,3 @@ def first_interrupt(announce: Callable[[], None]) -> Iterator[threading.Event]:
         yield event
     finally:
         signal.signal(signal.SIGINT, before)
-
-
-PROBES = 96
-LONGEST_PROBING = 3.0
-"""Time after which no further points are tried [s]."""
-
-
-def estimated_seconds(layout: StudyPoints, jobs: int) -> tuple[float, str]:
-    """Compute points spread over the study, in batches, and take
-    the rest to be like them.
-
-    Returns the time [s], and how it was found: what may take too long
-    to be tried is estimated.
-    """
-    context = layout.context
-    count = len(layout)
-    spent = 0.0
-    points = 0
-    tried = "trying some of the points"
-    few = 1 if layout.plan.whole else WORTH_LANES  # by the kernel that computes the study
-    numbers = sorted({count * (2 * i + 1) // (2 * PROBES) for i in range(PROBES)})
-    for batch in batches(layout, numbers, jobs=1):
-        most = np.array([_most_seconds(layout, point) for point in batch])
-        if most.max() > 10.0 * LONGEST_PROBING:  # not to be tried
-            seconds = float(most.mean()) * count / min(jobs, count)
-            return seconds, "the most steps that some points may take"
-        within = max(int(np.sum(np.cumsum(most) <= 10.0 * LONGEST_PROBING)), 1)
-        first = batch[: min(few, within)]
-        alone = _seconds(context, first) / len(first)  # reads records, loads kernels
-        if alone > 2.0 * LONGEST_PROBING:  # of which loading is little
-            return alone * count / min(jobs, count), tried
-        more = few * (1 + int(LONGEST_PROBING / _seconds(context, first)))
-        affordable = batch[: min(more, within)]
-        spent = spent + _seconds(context, affordable)
-        points = points + len(affordable)
-        if spent > LONGEST_PROBING:
-            break
-    return spent / points * count / min(jobs, count), tried
-
-
-def _most_seconds(layout: StudyPoints, point: Point) -> float:
-    """About the longest that the history of a point may take [s]."""
-    if layout.plan.analysis == "timehistory":
-        with suppress(Exception):  # which the point tells when it is tried
-            request = layout.context.history(point)
-            return most_seconds(request.structure, request.settings, request.motion)
-    return 0.0
-
-
-def _seconds(context: StudyContext, points: Sequence[Point]) -> float:
-    began = time.thread_time()  # whatever else runs on the machine
-    run_batch(context, points)
-    return time.thread_time() - began

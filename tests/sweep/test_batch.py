@@ -29,7 +29,7 @@ from rpscli.records.loading import load_components, load_record
 from rpscli.records.measures import intensity_measures, measured
 from rpscli.sweep.evaluation import SCALARS, at_path, resolved, run_batch
 from rpscli.sweep.points import lay_out
-from rpscli.sweep.run import LARGEST_BATCH, all_keys, batches
+from rpscli.sweep.run import EARLY_BATCH, LARGEST_BATCH, all_keys, batches
 from rpscli.sweep.statistics import summary
 from rpscli.sweep.statistics.summary import step_notes
 from rpscli.sweep.systems import balance_note, changes, sample
@@ -306,6 +306,13 @@ def test_batches_hold_every_point_once_and_one_size_of_building(study_of):
     found = list(batches(design, pending, jobs=2))
     assert sorted(point.number for batch in found for point in batch) == pending
     assert max(map(len, found)) <= LARGEST_BATCH
+    many = lay_out(
+        study_of(STUDY, ("seed: [1, 2, 3]", "seed: {low: 1, high: 99, count: 99}"))
+    )
+    sizes = [len(batch) for batch in batches(many, range(len(many)), jobs=2)]
+    assert sizes[:4] == [EARLY_BATCH] * 4  # a rate is soon known
+    assert sizes[4] > EARLY_BATCH
+    assert sum(sizes) == len(many)
     for batch in found:
         assert len({point.values[2] for point in batch}) == 1
 

@@ -188,6 +188,27 @@ def test_report_only_computes_nothing(sweep, workplace):
         assert (workplace / FOLDER / name).exists()
 
 
+def test_other_reports_of_the_same_points_keep_the_earlier_ones(sweep, workplace):
+    """Also if the new one fails; a sweep without the option takes them away."""
+    first = STUDY.replace("scale:", "reports: [overturning]\nscale:")
+    assert sweep("study.yaml", study=first).exit_code == 0
+    old = workplace / FOLDER / "overturning.csv"
+    before = old.read_bytes()
+    other = STUDY.replace("scale:", "reports: [rotation]\nscale:")
+    done = sweep("study.yaml", "--report-only", study=other)
+    assert done.exit_code == 0
+    assert "kept, of an earlier run: overturning.csv" in done.stderr
+    assert "removed" not in done.stderr
+    assert old.read_bytes() == before
+    assert (workplace / FOLDER / "rotation.csv").exists()
+    own = json.loads((workplace / FOLDER / "run.json").read_text("utf-8"))["files"]
+    assert {"overturning.csv", "rotation.csv"} <= {*own}
+    last = sweep("study.yaml", study=other)
+    assert "removed, of an earlier run: overturning.csv" in last.stderr
+    assert not old.exists()
+    assert (workplace / FOLDER / "rotation.csv").exists()
+
+
 def test_options_that_contradict_each_other_are_refused(sweep):
     for options in (("--fresh",), ("--retry-failed",), ("--scheduler", "tcp://x:1")):
         assert sweep("study.yaml", "--report-only", *options).exit_code == 2

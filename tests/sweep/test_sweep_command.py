@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 import subprocess
 import sys
 from copy import copy
@@ -320,7 +321,7 @@ def test_a_compilation_stands_in_the_bar_of_a_study_and_says_how_long_it_takes(
     monkeypatch.setenv("RPS_CACHE_DIR", str(tmp_path))
     monkeypatch.setattr(sweep_progress.sys.stderr, "isatty", lambda: True)
     monkeypatch.setenv("TERM", "xterm")
-    monkeypatch.setenv("COLUMNS", "100")
+    monkeypatch.setenv("COLUMNS", "80")
     listeners = []
     monkeypatch.setattr(compilation, "_listeners", listeners)
     for quiet in (False, True):
@@ -337,6 +338,8 @@ def test_a_compilation_stands_in_the_bar_of_a_study_and_says_how_long_it_takes(
             "60/100",
         ):
             assert (shown in text) != quiet
+        plain = re.sub(r"\x1b\[[?0-9;]*[a-zA-Z]", "", text)
+        assert quiet or re.search(r"\d:\d\d:\d\d compiling the kernel", plain)  # whole
 
 
 def test_limits_of_the_base_that_do_not_count_are_named():

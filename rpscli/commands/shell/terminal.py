@@ -400,7 +400,8 @@ def _line(
 
     with ExitStack() as opened:
         if not _bars:
-            columns = BarColumn(20), TextColumn("{task.description}"), TimeElapsedColumn()
+            # The clock first: a line that is too long is cut at its end.
+            columns = BarColumn(20), TimeElapsedColumn(), TextColumn("{task.description}")
             bar = Progress(*columns, console=Console(stderr=True), transient=True)
             _bars.append(opened.enter_context(bar))
             opened.callback(_bars.clear)

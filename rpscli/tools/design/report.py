@@ -215,6 +215,20 @@ NEAREST = 6
 """Designs beside the best one that are looked at, if that many were tried."""
 
 
+def best_so_far(answer: Answer) -> str:
+    """The best design that is known before the next round, in a line."""
+    tried = f"{len(answer.places)} designs tried"
+    passing = int(np.count_nonzero(answer.passes[0]))
+    at = answer.closest
+    values = ", ".join(
+        f"{axis_label(key)} = {value:.4g}"
+        for key, value in zip(answer.task.keys, answer.values[at], strict=True)
+    )
+    if answer.best is None:
+        return f"{tried}, none passes; the least violated so far: {values}"
+    return f"{tried}, {passing} pass; the best so far: {values}"
+
+
 def neighbours_note(answer: Answer, best: int) -> Iterator[str]:
     """A warning where the best design stands alone: at most one of
     those nearest to it passes.

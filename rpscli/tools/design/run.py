@@ -33,6 +33,7 @@ from rpscli.tools.design.report import (
     answer_document,
     answer_notes,
     answer_tables,
+    best_so_far,
     design_columns,
     figures,
     nothing_passes,
@@ -164,10 +165,11 @@ def designed(request: CaseRequest, choices: RunChoices, out: Output) -> Design |
         def evaluated(layout: StudyPoints) -> Points:
             nonlocal rounds
             rounds += 1
-            terminal.note(f"round {rounds}: {len(layout.properties)} designs")
+            designs = len(layout.properties)
+            terminal.note(f"round {rounds} of {search.most_rounds}: {designs} designs")
             return run(layout).table
 
-        answer = search.run(evaluated)
+        answer = search.run(evaluated, lambda known: terminal.note(best_so_far(known)))
         best = answer.values[[answer.closest]]
         if task.unseen and answer.best is not None:
             terminal.note("validation of the best design")

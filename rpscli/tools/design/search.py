@@ -322,13 +322,25 @@ class Search:
         self.layout = self.first.layout or lay_out(task.study_of(self.first.values[:1]))
         self.requirements = requirements_of(task, self.layout)
 
-    def run(self, evaluate: Callable[[StudyPoints], PointTable]) -> Answer:
-        """Look at designs round by round; `evaluate` computes points."""
+    @property
+    def most_rounds(self) -> int:
+        """Rounds that there may be, the first one included."""
+        return 1 + max(-(-(self.most - len(self.first.places)) // self.size), 0)
+
+    def run(
+        self,
+        evaluate: Callable[[StudyPoints], PointTable],
+        tell: Callable[[Answer], None] = lambda _: None,
+    ) -> Answer:
+        """Look at designs round by round; `evaluate` computes points, and `tell` hears
+        what is known before each further round.
+        """
         answer = self._judged(self.first, evaluate)
         while (count := min(self.size, self.most - len(answer.places))) > 0:
             places = next_places(answer, count)
             if not len(places):
                 break
+            tell(answer)
             answer = answer.with_more(self._judged(self._round(places), evaluate))
         return answer
 

@@ -1,6 +1,7 @@
 """`rps design`: exact answers, refusals, workers, interruptions, and what hangs on the records."""
 
 import json
+import re
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -139,7 +140,14 @@ def test_one_unknown_against_the_exact_answer(design, design_json):
     rows = csv_rows("designs.csv", "out")
     assert len(rows) == found["designs"]["looked_at"] <= 64
     # One unknown and a linked key: all of it is in the table of the terminal, as it was judged.
-    text = " ".join(design(FRAME, "-o", "out").stdout.split())
+    shown = design(FRAME, "-o", "out")
+    rounds = re.findall(r"round (\d+) of (\d+): \d+ designs", shown.stderr)
+    assert [int(number) for number, _ in rounds] == [*range(1, len(rounds) + 1)]
+    assert {int(most) for _, most in rounds} >= {len(rounds)}  # all designs were used
+    told = re.findall(r"(\d+) designs tried, \d+ pass; the best so far: ", shown.stderr)
+    assert len(told) == len(rounds) - 1
+    assert [int(tried) for tried in told] == sorted(map(int, told))
+    text = " ".join(shown.stdout.split())
     for key in (SLENDERNESS, WEDGE):
         best = f"{found['best']['values'][key]:.10g}"
         assert f" {best} " in text
