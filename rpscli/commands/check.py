@@ -128,7 +128,7 @@ def _record(case: Case) -> tuple[dict[str, Any] | None, RpsError | None]:
     """The case's own record, and why it cannot be read or goes with no limit of the case;
     nothing if the case names none.
     """
-    from rpscli.case.plausibility import doubts_of_directions
+    from rpscli.case.plausibility import doubts_of_motion
 
     if case.record is None:
         return None, None
@@ -139,7 +139,7 @@ def _record(case: Case) -> tuple[dict[str, Any] | None, RpsError | None]:
     found = motion.horizontal
     both = motion.y is not None
     warnings = [*found.warnings, *motion.warnings]
-    doubts = [str(doubt) for doubt in doubts_of_directions(case.structure, both=both)]
+    doubts = [str(doubt) for doubt in doubts_of_motion(case.structure, motion)]
     limits = conditions_of(case.limits, "limits of the case")
     unknown = unknown_of_pairs(limits, case.structure) if both else []
     known = {name: getattr(found, name) for name in RECORD}

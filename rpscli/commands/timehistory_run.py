@@ -24,7 +24,7 @@ from rpscli.case.conditions import (
     lacking_results,
     unknown_of_pairs,
 )
-from rpscli.case.plausibility import doubts_of_directions
+from rpscli.case.plausibility import doubts_of_motion
 from rpscli.commands import inputs
 from rpscli.commands.records_table import Records, records_parts
 from rpscli.commands.shell.options import Output
@@ -244,7 +244,6 @@ def refuse_unknown(history: History, conditions: Sequence[Condition]) -> None:
 def _document(history: History, result: TimeHistoryResult) -> dict[str, Any]:
     case = history.given.case
     ground = history.ground
-    both = history.ground.y is not None
     document = {
         **heading(COMMAND),
         "note": note_of_direction(result) or None,
@@ -258,7 +257,7 @@ def _document(history: History, result: TimeHistoryResult) -> dict[str, Any]:
         document["neighbours"] = [each._asdict() for each in history.beside]
         document["half_step"] = history.finer and history.finer._asdict()
     document["record"] |= {"scale": ground.scale, "scaled_to": ground.scaled_to or None}
-    doubts = map(str, doubts_of_directions(case.structure, both=both))
+    doubts = map(str, doubts_of_motion(case.structure, ground))
     document["warnings"] = [
         *case.warnings,
         *doubts,

@@ -8,6 +8,7 @@ from paper_structures import known, needs_compiled_kernels, podium, waves
 
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
+from rpscli.model.bearing import Bearing
 from rpscli.model.devices import (
     FrictionDamper,
     RollingResistance,
@@ -15,7 +16,9 @@ from rpscli.model.devices import (
     Tendon,
     ViscousDamper,
 )
+from rpscli.model.podium import PodiumStructure
 from rpscli.physics.state import FULL_CONTACT, ROCKING, ROLLING, STUCK
+from rpscli.records.loading import load_record
 from rpscli.report.bundles import history_columns
 from rpscli.report.timehistory import timehistory_document, timehistory_tables
 
@@ -169,3 +172,30 @@ def test_steps_are_as_good_as_without_devices(device):
     ]
     assert residuals[0] < 1e-8
     assert residuals[1] < max(residuals[0] / 4.0**5, 2e-11)  # or rounding
+
+
+@needs_compiled_kernels
+@pytest.mark.parametrize("exponent", [0.5, 0.8, 1.0])
+def test_dampers_below_their_linear_range_are_told(exponent):
+    """On ends that roll, in small motions; there a larger accuracy moves the maximum."""
+    motion = load_record("synthetic:?pga=0.3g&seed=1&duration=8&dt=0.01")
+    damper = ViscousDamper(2e4, exponent)
+    made = PodiumStructure(Bearing(1.5, 0.0, 0.3, 1.0), 4e4, 4e5, devices=(damper,))
+
+    def found(factor, accuracy=1.0):
+        settings = TimeHistorySettings(free_vibration=2.0, accuracy=accuracy)
+        return time_history(made, motion.scaled(factor), settings)
+
+    def told(result):
+        (said,) = [text for text in result.warnings if "exponent below 1" in text] or [""]
+        return said
+
+    small, large = found(1e-4), found(1.0)
+    assert 0.0 < small.rotation_ratio < 1e-4 < large.rotation_ratio
+    assert bool(told(small)) == (exponent < 1.0)
+    assert not told(large)
+    if exponent == 0.5:  # 8e-4 of it at 1.3e-6 of the critical rotation
+        assert "podium.devices.0" in told(small)
+        moved = small.max_rotation / found(1e-4, 16.0).max_rotation - 1.0
+        assert 1e-4 < abs(moved) < 5e-3
+        assert abs(large.max_rotation / found(1.0, 16.0).max_rotation - 1.0) < 1e-7

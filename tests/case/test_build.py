@@ -13,18 +13,20 @@ from paper_structures import known
 from rpscli.analyses.demand import demand
 from rpscli.case.build import DEVICE_KEYS
 from rpscli.case.case import load_case
-from rpscli.case.plausibility import doubts_of_directions
+from rpscli.case.plausibility import doubts_of_directions, doubts_of_motion
 from rpscli.case.schema.case_file import DeviceSection
 from rpscli.case.schema.keys import unit
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import CaseError
 from rpscli.model import devices
 from rpscli.model.bearing import Bearing
+from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import (
     ModalDamping,
     RayleighDamping,
     profile_stiffnesses,
 )
+from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.records.loading import load_record
 from rpscli.report.figures.bearing import DRAWN
 
@@ -410,3 +412,21 @@ def test_a_law_can_be_written_and_drawn(name):
     needed, optional = DEVICE_KEYS[name]
     assert {*needed, *optional} == {field.name for field in fields(devices.DEVICES[name])}
     assert {*needed, *optional} <= set(DeviceSection.model_fields)
+
+
+def test_a_pair_whose_component_is_zero_is_told():
+    """It rattles by another rule; on ends that roll smoothly there is none."""
+    still = GroundMotion(np.zeros(100), 0.01)
+    moved = GroundMotion(np.sin(np.arange(100.0)), 0.01)
+    flat = PodiumStructure(Bearing(1.5, 0.15, 0.3, 0.5), 4e4, 4e5)
+    round_ends = PodiumStructure(Bearing(1.5, 0.0, 0.3, 1.0), 4e4, 4e5)
+
+    def told(structure, x, y):
+        pair = MotionComponents(x, y=y)
+        return any("is zero" in str(each) for each in doubts_of_motion(structure, pair))
+
+    assert told(flat, moved, still)
+    assert told(flat, still, moved)
+    assert not told(flat, moved, moved)
+    assert not told(flat, moved, None)
+    assert not told(round_ends, moved, still)
