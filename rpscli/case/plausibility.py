@@ -70,6 +70,9 @@ WALKS = 0.25
 """tan(alpha) above which contacts that rebound let the beam walk over
 its columns (Theory, 2)."""
 
+LEAST_STRENGTH = 1e5
+"""Of material under an end [Pa], a tenth of any mortar: a smaller number has lost its MPa."""
+
 NEIGHBOURS = 20.0
 """No storey is so many times as heavy, or as stiff, as the next one."""
 
@@ -217,9 +220,12 @@ def _pressed_arcs(structure: PodiumStructure) -> Iterator[Doubt]:
         return
     pressure, *_ = column.pressed(bearing, np.array(tilt), np.array(structure.rest_force))
     if pressure > (strength := column.contact_strength):
+        remedy = "a larger radius or more columns lower it"
+        if strength < LEAST_STRENGTH:
+            remedy = f"{strength:g} MPa? write contact_strength: {strength:g} MPa"
         yield Doubt(
             "podium.column: under the weight alone the pressure on arcs is {0} times"
-            " contact_strength{1}; a larger radius or more columns lower it",
+            f" contact_strength{{1}}; {remedy}",
             float(pressure / strength),
             f" ({1e-6 * pressure:.4g} MPa over {1e-6 * strength:.4g} MPa)",
         )

@@ -86,10 +86,10 @@ def command(words: tuple[str, ...], terminal: Terminal) -> None:
         for name, meaning in glossary()
         if _as_printed(word) in _names(name)
     ]
+    # A row of a table may have two results: "uplifts, impacts".
+    labels = {word.lower(), *(part.strip() for part in word.lower().split(","))}
     named = [
-        q
-        for q in EVERY.values()
-        if word == q.name or (word.lower() == q.label and not meant)
+        q for q in EVERY.values() if word == q.name or (q.label in labels and not meant)
     ]
     keys = _keys(word, texts=not report)
     entries = [*report, *keys, *map(_result, named), *meant]

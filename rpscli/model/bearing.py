@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from rpscli.errors import is_size, require_fields
 from rpscli.physics.laws import geometry
+from rpscli.units import computed_remedy
 
 Ends: TypeAlias = Literal["spherical", "cylindrical"]
 
@@ -31,6 +32,10 @@ def first_order_critical_curvature_ratio(
     0.25
     """
     return 0.5 * (1.0 - slenderness / wedge_slenderness)
+
+
+STEEP = 2.0
+"""Slenderness above which no column stands: perhaps an angle in degrees."""
 
 
 @dataclass(frozen=True)
@@ -113,14 +118,14 @@ class Bearing:
             raise ValueError(
                 f"wedge_slenderness = {self.wedge_slenderness:g} must be >= slenderness ="
                 f" {self.slenderness:g}: the arcs lie outside the flat part; both are"
-                " tangents"
+                f" tangents{self._angles()}"
             )
         if not self.is_flat and self._sin_beta > 1.0:
             raise ValueError(
                 f"curvature_ratio = {self.curvature_ratio:.6g} must be >="
                 f" {0.5 * (self.wedge_slenderness - self.slenderness):.6g} = (tan alpha'"
                 " - tan alpha)/2: a smaller arc does not reach the wedge's edge; use a"
-                " larger one, or a smaller wedge_slenderness"
+                f" larger one, or a smaller wedge_slenderness{self._angles()}"
             )
         axial: float | None = vars(self)["inertia_ratio_axial"]
         if axial is None:
@@ -138,6 +143,13 @@ class Bearing:
                 f"ends = {self.ends} has no meaning for flat ends, which are not curved:"
                 " give them arcs, or remove ends"
             )
+
+    def _angles(self) -> str:
+        """A hint at degrees where a slenderness is no tangent of any column."""
+        steep = [
+            each for each in (self.slenderness, self.wedge_slenderness) if each > STEEP
+        ]
+        return "".join(computed_remedy(f"{each:g} deg", "1") for each in steep)
 
     @property
     def is_flat(self) -> bool:

@@ -279,3 +279,29 @@ def test_a_folder_of_examples_is_written_whole(rps):
     rps("init", "--example", "compdyn2021", "paper")
     written = {path.name for path in Path("paper/compdyn2021").iterdir()}
     assert written == {path.name for path in (ROOT / "cases" / "compdyn2021").iterdir()}
+
+
+def test_rows_of_tables_are_explained(rps, rps_json):
+    """With their symbol, or two results in a row; verdicts in doubt as well."""
+    both = rps_json("explain", "uplifts,", "impacts")["results"]
+    assert {each["name"] for each in both} == {"uplifts", "impacts"}
+    (one,) = rps_json("explain", "restitution at impact e")["words"]
+    assert one["meaning"].startswith("rate of the tilt after an impact")
+    assert "reverse" in rps("explain", "in", "doubt").stdout
+
+
+def test_slips_of_units_are_answered_with_what_was_perhaps_meant(rps):
+    """Degrees in place of tangents, and a strength that has lost its MPa."""
+    shape = "podium.bearing={semi_diagonal: 1.5, curvature_ratio: 0.5"
+    angles = f"{shape}, slenderness: 8.5, wedge_slenderness: 20}}"
+    for hint in ("an angle? tan(8.5 deg) = 0.149", "tan(20 deg) = 0.364"):
+        rps("check", "small.yaml", "--set", angles, exit_code=3, says=hint)
+    tangents = f"{shape}, slenderness: 0.4, wedge_slenderness: 0.2}}"
+    failed = rps("check", "small.yaml", "--set", tangents, exit_code=3)
+    assert "angle" not in failed.stderr
+    column = "{section: round, modulus: 35 GPa, poisson: 0.2, contact_strength: %s}"
+    words = "check", "small.yaml", "--set", "podium.columns=4", "--set"
+    lost = rps(*words, f"podium.column={column % 1100}")
+    assert "write contact_strength: 1100 MPa" in lost.stderr
+    weak = rps(*words, f"podium.column={column % '1 MPa'}")
+    assert "a larger radius or more columns lower it" in weak.stderr
