@@ -42,7 +42,7 @@ class CaseInput:
     def seen(self, direction: str) -> PodiumStructure:
         """The structure as a motion along x or y meets it."""
         structure = self.case.structure
-        return structure.in_y if direction == "y" else structure
+        return structure.in_y() if direction == "y" else structure
 
     def titled(self, direction: str) -> str:
         """The title of the case, with the direction where this is not x."""

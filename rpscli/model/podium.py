@@ -226,7 +226,6 @@ class PodiumStructure(Shown):
             self if self.superstructure_y is None else self._under(self.superstructure_y)
         )
 
-    @property
     def in_y(self) -> PodiumStructure:
         """The structure as a motion along y meets it: the building and the rows of that
         direction.

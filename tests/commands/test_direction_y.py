@@ -74,10 +74,10 @@ def test_results_in_y_stand_beside_those_in_x(two_ways, rps_json):
 
 def test_the_rows_of_y_come_first(two_ways):
     structure = load_case(Path("both.yaml")).structure
-    assert structure.in_y.rows == structure.rows_y == (0.0, 1.0, 5.0, 9.0)
-    assert structure.in_y.rows_y == structure.rows
+    assert structure.in_y().rows == structure.rows_y == (0.0, 1.0, 5.0, 9.0)
+    assert structure.in_y().rows_y == structure.rows
     alike = load_case(Path("turned.yaml")).structure
-    assert alike.in_y.superstructure is alike.superstructure
+    assert alike.in_y().superstructure is alike.superstructure
 
 
 def test_periods_stand_beside_frequencies_and_vertical_modes_in_a_line(two_ways, rps):
