@@ -36,7 +36,10 @@ _NAMED = re.compile(
     r"|sud|süd|sur|g[uü]ney|юг|南北|東西|db|kg",
     re.IGNORECASE,
 )
-_AZIMUTH = re.compile(r"(?:az|azimuth)?(\d{1,3})(?:deg|°|degrees)?", re.IGNORECASE)
+_AZIMUTH = re.compile(
+    r"(?:az|azimuth)?(0|\d{2,3}|\d(?=d|°))(?:deg|°|degrees)?", re.IGNORECASE
+)
+"""An azimuth; 1, 2 and 3 alone are numbers of components."""
 
 
 def direction_of(text: str) -> RecordDirection | None:

@@ -22,15 +22,27 @@ _NUMERIC_LINE = re.compile(r"[-+.0-9EeDd,\s]*")
 
 NUMBER_PATTERN = rf"[+-]?{_UNSIGNED}"  # a regular expression for one number
 ACCELERATIONS = {
-    name: si_factor(name, "m/s2")
-    for name in ("g", "m/s2", "cm/s2", "mm/s2", "gal", "in/s2", "ft/s2")
+    **{
+        name: si_factor(name, "m/s2")
+        for name in ("g", "m/s2", "cm/s2", "mm/s2", "gal", "in/s2", "ft/s2")
+    },
+    "mg": 0.001 * si_factor("g", "m/s2"),
+    "%g": 0.01 * si_factor("g", "m/s2"),
 }
+"""The one table of units of acceleration, by their canonical names [m/s2]."""
 
 KNOWN_UNITS = ", ".join(ACCELERATIONS)  # the canonical names, for messages
+_PER_SECOND_TWICE = (
+    r"\s*(?:/\s*(?:s(?:ec|n)?|с(?:ек)?)\.?\s*"
+    r"(?:/\s*(?:s(?:ec|n)?|с(?:ек)?)|\^\s*\{?2\}?|\*\*\s*2|2|²)"
+    r"|\s*[·*.]?\s*s(?:ec)?\s*\^?\s*\{?(?:[-−]\s*2|⁻²)\}?)(?!\w)"
+)
 UNIT_PATTERN = (
-    r"(?:[cm]?m|in|ft)\s*/\s*s(?:ec)?\s*(?:/\s*s(?:ec)?|\^\s*2|\*\*\s*2|2|²)(?![A-Za-z0-9])"
-    r"|gals?(?![A-Za-z0-9])|gravity\b|g's(?![A-Za-z0-9])"
-    r"|g(?![A-Za-z0-9/])"
+    rf"(?:[cm]?ms?|in|ft|[см]?м){_PER_SECOND_TWICE}"
+    r"|(?:milli[- ]?|m)g(?![\w/])|%\s*(?:of\s+)?g(?![\w/])"
+    r"|(?:10\s*\^\s*[-−]\s*3|1e-0?3)\s*\*?\s*g(?![\w/])|g\s*/\s*1000(?!\d)"
+    r"|gals?(?!\w)|гал(?!\w)|gravity\b|g's(?!\w)"
+    r"|g(?![\w/])"
 )
 """A regular expression (ignoring case) for the spellings of
 `canonical_unit` in running text."""
@@ -94,18 +106,32 @@ def last_digit(numeral: str) -> float:
 
 
 def canonical_unit(text: str) -> str | None:
-    """One of the known names for a unit of acceleration, or None if it is not one."""
-    unit = re.sub(r"[\s()\[\]]", "", text.lower())
-    unit = unit.replace("sec", "s").replace("⁻²", "-2").replace("²", "2")
+    """One of the known names for a unit of acceleration, or None if it is not one.
+
+    >>> canonical_unit("CMS/SEC/SEC"), canonical_unit("milli-g"), canonical_unit("% g")
+    ('cm/s2', 'mg', '%g')
+    """
+    unit = re.sub(r"[\s()\[\]{}]", "", text.lower()).replace("−", "-")
+    unit = unit.replace("²", "2").replace("⁻", "-")
+    if match := _CYRILLIC.fullmatch(unit):
+        unit = f"{match[1].translate(_LENGTHS)}/s2"
+    unit = re.sub(r"(?<=[/.·*m])(?:sec|sn)\b\.?|(?<=/)(?:sec|sn)(?=[\^*2])", "s", unit)
     unit = re.sub(r"[·*.](?=s)", "", unit) if unit.endswith("-2") else unit
     unit = unit.replace("**", "^").replace("^", "")
     unit = re.sub(r"/s/s$", "/s2", unit)
-    unit = {
-        "gals": "gal",
-        "gravity": "g",
-        "g's": "g",
-        "ms-2": "m/s2",
-        "cms-2": "cm/s2",
-        "mm/s/s": "mm/s2",
-    }.get(unit, unit)
+    unit = re.sub(r"^([cm]?m)s(?=/)", r"\1", unit)  # CMS/SEC/SEC
+    unit = re.sub(r"^([cm]?m|in|ft)s(?:ec)?-2$", r"\1/s2", unit)
+    unit = _SPELT.get(unit, unit)
     return unit if unit in ACCELERATIONS else None
+
+
+_CYRILLIC = re.compile(r"([см]?м)/с(?:ек)?(?:\*{0,2}\^?2|/с(?:ек)?)")
+_LENGTHS = str.maketrans("см", "cm")
+_SPELT = {
+    **dict.fromkeys(("gals", "гал"), "gal"),
+    **dict.fromkeys(("gravity", "g's"), "g"),
+    **dict.fromkeys(("millig", "milli-g", "10-3g", "10-3*g", "1e-3g", "1e-03g"), "mg"),
+    **dict.fromkeys(("g/1000", "0.001g", "mgs"), "mg"),
+    **dict.fromkeys(("%ofg", "0.01g", "percentg"), "%g"),
+    "sm/s2": "cm/s2",
+}

@@ -9,8 +9,10 @@ may stand before or after their numbers, with or without "=", on one line or on 
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 from rpscli.constants import STANDARD_GRAVITY
+from rpscli.records.formats.header_lines import Facts, HeaderLines, doubts_of_header
 from rpscli.records.formats.record_text import Channel, RecordText, Stated
 from rpscli.records.formats.recording_words import titled_recording
 from rpscli.records.formats.statements import (
@@ -63,6 +65,10 @@ _UNITS = re.compile(
 )
 
 
+_OWN = re.compile("PEER AT2 LAYOUT, .* BY RPS ")
+"""The first line of a file that rps wrote: titles in any words follow."""
+
+
 _Header = tuple[
     Statement, Statement, int
 ]  # of NPTS and of DT, and the first line of values
@@ -95,7 +101,32 @@ def read_at2(text: RecordText) -> GroundMotion:
         )
     note = [f"{len(rest)} line(s) of text after the values, {first}"] * bool(rest)
     words = "; ".join(_title(text, npts)) or "no title"
-    return text.motion(stated, values, FORMAT, words, *filter(None, (rounded, *note)))
+    motion = text.motion(stated, values, FORMAT, words, *filter(None, (rounded, *note)))
+    unit, factor = text.agreed_factor(stated.unit)
+    facts = Facts(values, unit, factor, motion.dt, values.size)
+    doubts = doubts_of_header(_unread(text, start), facts)
+    known = (each for each in doubts if each not in motion.warnings)
+    return replace(motion, warnings=(*motion.warnings, *known))
+
+
+_UNDERSTOOD = re.compile(
+    "|".join(f"(?:{of})" for of in (_COUNT.pattern, _STEP, PEAK_PATTERN)), re.IGNORECASE
+)
+
+
+def _unread(text: RecordText, start: int) -> HeaderLines:
+    """The lines above the values without what was understood; numbers in titles are not
+    statements.
+    """
+    heads = [*enumerate(text.heads[:start])]
+    if heads and _OWN.match(heads[0][1]):
+        heads = heads[-2:]
+    lines = [
+        (index, _UNDERSTOOD.sub(";", line))
+        for index, line in heads
+        if not titled_recording(line) and not _BOTH.search(line)
+    ]
+    return HeaderLines(text, lines, loose=False)
 
 
 def contents_of_at2(text: RecordText) -> list[Channel]:

@@ -11,15 +11,14 @@ taken, of several accelerations that which `?channel=` names.
 from __future__ import annotations
 
 import re
-from array import array
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import NamedTuple, NoReturn
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rpscli.errors import RecordError
 from rpscli.records.directions import direction_in
+from rpscli.records.formats.header_lines import Facts, HeaderLines, doubts_of_header
 from rpscli.records.formats.record_text import (
     Array,
     Channel,
@@ -28,12 +27,21 @@ from rpscli.records.formats.record_text import (
     printed_resolution,
     uniform_step,
 )
-from rpscli.records.formats.recording_words import recording_of
+from rpscli.records.formats.recording_words import recording_of, without_recording
 from rpscli.records.formats.statements import (
     PEAK_PATTERN,
     STEP_PATTERN,
     Statement,
     statements,
+)
+from rpscli.records.formats.tables import (
+    COUNT_PATTERN,
+    FEWEST_IN_A_LINE,
+    Table,
+    blank_within,
+    is_comment,
+    plain_line,
+    table_of,
 )
 from rpscli.records.formats.titles import (
     ACCELERATION,
@@ -52,7 +60,6 @@ from rpscli.records.quantities import (
     canonical_unit,
     numbers_in,
     numerals_in,
-    why_no_numbers,
 )
 
 _STEP = (
@@ -61,40 +68,20 @@ _STEP = (
 )
 _RATE = (
     r"(?<![?&])\b(?:sampl\w*[\s_]*(?:rate|freq\w*)|fs|sps)\b\s*(?:[(\[]\s*(?:hz|sps)\s*[)\]])?"
-    rf"\s*[=:]\s*({NUMBER_PATTERN})\s*(?:hz|sps|1/s|samples?\s*/\s*s\w*)?(?![A-Za-z])"
+    rf"\s*[=:]?\s*({NUMBER_PATTERN})\s*(?:hz|sps|1/s|samples?\s*/\s*s\w*)?(?![A-Za-z])"
+    rf"|(?<![\w.])({NUMBER_PATTERN})\s*(?:sps\b|samples?\s*(?:/|per)\s*s\w*)"
 )
-_COUNT = r"\b(?:npts|ndata|number of (?:data|points|samples|values))\b\s*[=:]\s*([0-9]+)"
 _UNITS_KEY = (
     r"(?<![?&])\b\w*?units?\b\s*(?:[=:]|(?:of|in|are|is)\b)"
     rf"(?:[\s(\[]*(?:({UNIT_PATTERN}))|\s*([^,;]+))"
 )
 
 
-class _Table(NamedTuple):
-    """Lines of text before the first number, numbers of all rows, one
-    after the other, and rows.
-
-    Of rows the number of values and the line of the file; `above` is the line
-    of the words above the first number, but for rulers, `announced` the
-    number of values or rows.
-    """
-
-    header: tuple[Statement, ...]
-    values: Array
-    widths: NDArray[np.int64]
-    lines: NDArray[np.int64]
-    above: int
-    announced: int | None
-
-    @property
-    def words(self) -> str:
-        """The first line of the header."""
-        return self.header[0].value[:100] if self.header else "no header"
-
-
 def recognises_columns(text: RecordText) -> bool:
     """True if most lines, and the last that is no comment, hold nothing but numbers."""
-    body = [_plain(line) for line in text.lines if line.strip() and not _is_comment(line)]
+    body = [
+        plain_line(line) for line in text.lines if line.strip() and not is_comment(line)
+    ]
     numeric = sum(1 for line in body if numbers_in(line))
     if len(body) == 1 and len(numbers_in(body[0]) or []) >= FEWEST_IN_A_LINE:
         return True
@@ -103,21 +90,22 @@ def recognises_columns(text: RecordText) -> bool:
 
 def read_columns(text: RecordText) -> GroundMotion:
     """Read a series of accelerations, or the rows of a bare AT2 body."""
-    table = _table(text)
+    table = table_of(text)
     width = int(table.widths[0])
     even = not np.any(table.widths != width)
     titles = _titles(text, table, width)
     if even and width > 2 and text.channel and not titles:  # by their places
         line = int(table.lines[0])
         titles = [
-            ColumnTitle("time" if i == 0 else f"{i + 1}", "", line) for i in range(width)
+            ColumnTitle("time" if i == 0 else f"acc {i + 1}", "", line)
+            for i in range(width)
         ]
     _refuse_other_quantities(text, table, titles)
     if even and width > 1 and (width == 2 or titles):
         return _columns(text, table, titles)
     text.single_channel()
     doubts = [] if width == 1 and even else [_wrapped(text, table)]
-    doubts += _blank_within(text, table)
+    doubts += blank_within(text, table)
     title = titles[0] if width == 1 and titles else None
     stated = _stated(text, table, title)
     values = table.values
@@ -138,12 +126,13 @@ def read_columns(text: RecordText) -> GroundMotion:
         )
     if values[0] == dt:
         doubts.append(f"the first value, {dt:g}, equals dt: see that it is not a header")
-    return text.motion(stated, values, "one-column text", table.words, *doubts)
+    read = _Read("one-column text", table.words, tuple(doubts))
+    return _motion(text, table, stated, values, read, titles)
 
 
 def contents_of_columns(text: RecordText) -> list[Channel]:
     """The columns of accelerations, each with what header and title say of it."""
-    table = _table(text)
+    table = table_of(text)
     width = int(table.widths[0])
     recording = recording_of(line.value for line in table.header)
     titles = [] if np.any(table.widths != width) else _titles(text, table, width)
@@ -160,26 +149,15 @@ def contents_of_columns(text: RecordText) -> list[Channel]:
     ]
 
 
-def _plain(line: str) -> str:
-    """A line of numbers without quotes, between blanks where ; or tabs part them.
-
-    Commas are decimal ones then.
-    """
-    if '"' in line:
-        line = line.replace('"', " ")
-    if (";" in line or "\t" in line) and not re.search("[A-Za-z]{2}", line):
-        return re.sub(r"(?<=\d),(?=\d)", ".", line).replace(";", " ").replace("\t", " ")
-    return line
+_IS_STATEMENT = re.compile(
+    rf":|=\s*[+-]?\.?\d|{PEAK_PATTERN}|\w\s.*(?<![\w.])\d[\d.,]*\s*(?:{UNIT_PATTERN}|[a-z]*/[a-z]+)?$",
+    re.IGNORECASE,
+)
+_OWN_TITLES = "Time (s)  Acceleration (m/s2)"
+"""Of a file that rps wrote: its first line is a title in any words."""
 
 
-def _is_comment(line: str) -> bool:
-    return line.lstrip().startswith(("#", "%", "!", "//", "*", "|"))
-
-
-_IS_STATEMENT = re.compile(rf":|=\s*[+-]?\.?\d|{PEAK_PATTERN}", re.IGNORECASE)
-
-
-def _titles(text: RecordText, table: _Table, width: int) -> list[ColumnTitle]:
+def _titles(text: RecordText, table: Table, width: int) -> list[ColumnTitle]:
     """Titles of the columns that the user gives, else the last line that has a title for
     each; empty without one.
     """
@@ -215,7 +193,7 @@ def _titles(text: RecordText, table: _Table, width: int) -> list[ColumnTitle]:
     ]
 
 
-def _titles_behind_a_key(table: _Table, width: int) -> list[ColumnTitle]:
+def _titles_behind_a_key(table: Table, width: int) -> list[ColumnTitle]:
     """Titles behind a key, as in `DataSequence: Time U(+); N(+); E(+)`, if all of them
     are understood.
     """
@@ -231,7 +209,7 @@ def _titles_behind_a_key(table: _Table, width: int) -> list[ColumnTitle]:
 
 def _cells(line: str, separator: str) -> list[str]:
     """The cells of a line of titles; none where one is empty, but for one at the end."""
-    cells = [_plain(cell).strip() for cell in re.split(separator, line.strip())]
+    cells = [plain_line(cell).strip() for cell in re.split(separator, line.strip())]
     if len(cells) > 1 and not cells[-1]:  # as spreadsheets end their lines
         cells.pop()
     return cells if all(cells) else []
@@ -260,130 +238,7 @@ def _titles_given(text: RecordText, columns: str, width: int) -> list[ColumnTitl
     return titles
 
 
-@dataclass
-class _Rows:
-    """A table while it is read: of rows and their values there may be millions."""
-
-    header: list[Statement] = field(default_factory=list)
-    values: array[float] = field(default_factory=lambda: array("d"))
-    widths: array[int] = field(default_factory=lambda: array("q"))
-    lines: array[int] = field(default_factory=lambda: array("q"))
-    above: int = -1
-
-
-def _table(text: RecordText) -> _Table:
-    """The rows of numbers of a text, held against what its header announces."""
-    rows = _rows(text)
-    widths = rows.widths
-    if len(widths) > 3 and widths[0] == 2 and set(widths[1:]) == {1}:
-        _move_count_and_step(text, rows)
-    if len(widths) < 2:
-        _refuse_without_rows(text, rows)
-
-    kept = tuple(line for line in rows.header if line.value)
-    said = statements("npts", _COUNT, ((of.line, of.value) for of in kept))
-    values = rows.values
-    if (announced := text.agreed(said, text.count)) not in (
-        None,
-        len(values),
-        len(widths),
-    ):
-        raise text.fault(
-            f"the header announces {announced} values and the file holds {len(widths)}"
-            f" row(s) and {len(values)} number(s); fetch it again, or correct the header"
-        )
-    return _Table(
-        kept,
-        np.array(values),
-        np.array(widths),
-        np.array(rows.lines),
-        rows.above,
-        announced,
-    )
-
-
-def _rows(text: RecordText) -> _Rows:
-    """Rows of numbers, with the lines above the first of them."""
-    rows = _Rows()
-    for index, line in enumerate(text.lines):
-        row = numbers_in(_plain(line))
-        if row:
-            rows.values.extend(row)
-            rows.widths.append(len(row))
-            rows.lines.append(index)
-        elif not rows.widths:
-            words = text.heads[index].strip().lstrip("#%!/*|").strip()
-            rows.header.append(Statement("header", words, index))
-            if any(map(str.isalpha, words)):
-                rows.above = index
-            elif not line.strip():
-                rows.above = -1
-        elif row is None and not _is_comment(line):
-            raise text.fault(
-                f"{line.strip()[:40]!r} stands among the values and is not a row of"
-                f" finite numbers{why_no_numbers(line)}; begin comments with #",
-                index,
-            )
-    if len(rows.widths) == 1 and rows.widths[0] >= FEWEST_IN_A_LINE:
-        _part(rows)
-    return rows
-
-
-FEWEST_IN_A_LINE = 16
-"""Values of a record that stands in one line."""
-
-
-def _part(rows: _Rows) -> None:
-    """Make of one line of values as many rows of one."""
-    count = rows.widths[0]
-    rows.widths = array("q", [1] * count)
-    rows.lines = array("q", [rows.lines[0]] * count)
-
-
-def _blank_within(text: RecordText, table: _Table) -> list[str]:
-    """A doubt about blank lines that part the values, as two records in one file do."""
-    behind = np.flatnonzero(np.diff(table.lines) > 1)
-    blank = [
-        int(table.lines[place])
-        for place in behind
-        if not text.lines[int(table.lines[place]) + 1].strip()
-    ]
-    if not blank:
-        return []
-    doubt = f"a blank line behind line {blank[0] + 1} parts the values, which are read as"
-    return [f"{doubt} one record: keep one record in a file"]
-
-
-def _move_count_and_step(text: RecordText, rows: _Rows) -> None:
-    """Take a first row, of the count of values and their step, to the header."""
-    line = rows.lines[0]
-    count, step = numerals_in(text.lines[line])
-    following = len(rows.widths) - 1
-    if not (count.isdigit() and int(count) == following):
-        raise text.fault(
-            f"{count} and {step} look like the number of values and their step, but"
-            f" {following} values follow; correct them, or begin their line"
-            " with #",
-            line,
-        )
-    rows.header.append(Statement("count and step", f"npts: {count}, dt: {step}", line))
-    del rows.values[:2], rows.widths[0], rows.lines[0]
-
-
-def _refuse_without_rows(text: RecordText, rows: _Rows) -> NoReturn:
-    """Refuse a text with fewer than two rows of numbers, at what is nearly one."""
-    odd = next((i for i, line in enumerate(text.heads) if why_no_numbers(line)), None)
-    if odd is not None:
-        line = text.heads[odd]
-        why = why_no_numbers(line)
-        raise text.fault(f"{line.strip()[:40]!r} is not a row of numbers{why}", odd)
-    raise text.fault(
-        f"no known format of ground motions: {len(rows.widths)} row(s) of numbers; export"
-        " the record as PEER AT2, or as columns of time and acceleration"
-    )
-
-
-def _columns(text: RecordText, table: _Table, titles: list[ColumnTitle]) -> GroundMotion:
+def _columns(text: RecordText, table: Table, titles: list[ColumnTitle]) -> GroundMotion:
     """One of several columns, with the times of another."""
     width = int(table.widths[0])
     values = table.values.reshape(-1, width)
@@ -407,7 +262,59 @@ def _columns(text: RecordText, table: _Table, titles: list[ColumnTitle]) -> Grou
         stated, late = _timed(text, table, stated, values[:, times], times, titles)
     words = table.words + (f", column {title.name}" if title and width > 2 else "")
     form = "two-column text" if width == 2 else "columns of text"
-    return text.motion(stated, values[:, place], form, words, *late)
+    read = _Read(form, words, tuple(late))
+    return _motion(text, table, stated, values[:, place], read, titles)
+
+
+class _Read(NamedTuple):
+    """How a motion was read: its form, words of it, and doubts."""
+
+    form: str
+    words: str
+    doubts: tuple[str, ...]
+
+
+def _motion(
+    text: RecordText,
+    table: Table,
+    stated: Stated,
+    values: Array,
+    read: _Read,
+    titles: list[ColumnTitle],
+) -> GroundMotion:
+    """The motion of values, held against all that the header says."""
+    motion = text.motion(stated, values, read.form, read.words, *read.doubts)
+    unit, factor = text.agreed_factor(stated.unit)
+    facts = Facts(values, unit, factor, motion.dt, table.values.size)
+    doubts = doubts_of_header(_unread(text, table, titles), facts)
+    known = (each for each in doubts if each not in motion.warnings)
+    return replace(motion, warnings=(*motion.warnings, *known))
+
+
+_UNDERSTOOD = re.compile(
+    "|".join(
+        f"(?:{of})" for of in (_STEP, _RATE, COUNT_PATTERN, _UNITS_KEY, PEAK_PATTERN)
+    ),
+    re.IGNORECASE,
+)
+
+
+def _unread(text: RecordText, table: Table, titles: list[ColumnTitle]) -> HeaderLines:
+    """The lines above the values without titles and what else was understood."""
+    titled = {title.line for title in titles}
+    if any(of.value == _OWN_TITLES for of in table.header):
+        titled.add(table.header[0].line)
+    lines = [
+        (of.line, _UNDERSTOOD.sub(";", without_recording(of.value)))
+        for of in table.header
+        if of.line not in titled and not _is_row_of_units(of.value)
+    ]
+    return HeaderLines(text, lines)
+
+
+def _is_row_of_units(line: str) -> bool:
+    cells = [cell.strip("()[]") for cell in re.split(r"[,;\s]+", line.strip()) if cell]
+    return len(cells) > 1 and all(map(ANY_UNIT.fullmatch, cells))
 
 
 def _are_counts(text: RecordText, times: Array) -> bool:
@@ -417,14 +324,14 @@ def _are_counts(text: RecordText, times: Array) -> bool:
 
 def _timed(
     text: RecordText,
-    table: _Table,
+    table: Table,
     stated: Stated,
     times: Array,
     place: int,
     titles: list[ColumnTitle],
 ) -> tuple[Stated, list[str]]:
     """The step of a column of times, and what is to be said of them."""
-    numerals = (numerals_in(_plain(text.lines[line]))[place] for line in table.lines)
+    numerals = (numerals_in(plain_line(text.lines[line]))[place] for line in table.lines)
     resolution = printed_resolution(times, numerals)
     title = titles[place] if titles and titles[place].kind == TIME else None
     factor = (
@@ -451,7 +358,7 @@ def _timed(
     return replace(stated, step=step, resolution=known_to / 0.51), late
 
 
-def _wrapped(text: RecordText, table: _Table) -> str:
+def _wrapped(text: RecordText, table: Table) -> str:
     """A note on rows that were read one after the other; refuses
     rows that look otherwise.
     """
@@ -480,12 +387,13 @@ def _wrapped(text: RecordText, table: _Table) -> str:
     return f"rows of {width} numbers were read one after the other"
 
 
-def _stated(text: RecordText, table: _Table, title: ColumnTitle | None) -> Stated:
+def _stated(text: RecordText, table: Table, title: ColumnTitle | None) -> Stated:
     """Statements of the header and of the title; two units, or steps, are refused."""
     lines = [(of.line, of.value) for of in table.header]
-    units = statements("units", _UNITS_KEY, lines)
+    unread = _unread(text, table, [title] if title else [])
+    units = [*statements("units", _UNITS_KEY, lines), *unread.units()]
     text.refuse_multiples(lines, _UNITS_KEY)
-    steps = text.understood_steps(statements("dt", _STEP, lines))
+    steps = text.understood_steps(statements("dt", _STEP, lines)) + unread.steps()
     steps += [
         each._replace(value=f"{1.0 / text.number(each, positive=True):.15g}")
         for each in statements("the sampling rate", _RATE, lines)
@@ -506,7 +414,7 @@ COLUMNS = "?columns=time,acceleration [g]"
 
 
 def _refuse_other_quantities(
-    text: RecordText, table: _Table, titles: list[ColumnTitle]
+    text: RecordText, table: Table, titles: list[ColumnTitle]
 ) -> None:
     """Refuse columns of other quantities, and titles that are not understood."""
     kinds = [title.kind for title in titles]
@@ -523,11 +431,11 @@ def _refuse_other_quantities(
         _refuse_titles(text, titles, kinds)
 
 
-def _refuse_other_series(text: RecordText, table: _Table) -> None:
+def _refuse_other_series(text: RecordText, table: Table) -> None:
     """Refuse velocities and displacements by a title anywhere in the header."""
     for line in table.header:
         for cell in re.split(r"[,;\t]|\s{2,}", line.value):
-            title = title_of(_plain(cell), line.line)
+            title = title_of(plain_line(cell), line.line)
             is_title = title.name and not re.search(r"[\d:=]", cell)
             if is_title and title.kind in ("velocity", "displacement"):
                 raise text.fault(

@@ -44,10 +44,12 @@ _MULTIPLE = re.compile(
 )
 """A factor on the values."""
 
-_TIME_UNITS = {
-    **dict.fromkeys(("", "s", "sec", "secs", "second", "seconds"), 1.0),
-    **dict.fromkeys(("ms", "msec", "msecs", "millisec", "millisecs"), 1e-3),
-    **dict.fromkeys(("millisecond", "milliseconds"), 1e-3),
+TIME_UNITS = {
+    **dict.fromkeys(("", "s", "sec", "secs", "second", "seconds", "sn", "seg", "с"), 1.0),
+    **dict.fromkeys(("сек", "saniye", "segundos", "secondes", "secondi", "秒"), 1.0),
+    **dict.fromkeys(("sekunde", "sekunden", "segundo", "seconde", "secondo"), 1.0),
+    **dict.fromkeys(("ms", "msec", "msecs", "millisec", "millisecs", "мс"), 1e-3),
+    **dict.fromkeys(("millisecond", "milliseconds", "milisegundos", "mseg"), 1e-3),
 }
 _JOINING = {
     "and",
@@ -232,6 +234,7 @@ class RecordText:
         shown = numeral[:_SHOWN]
         if re.fullmatch(r"[+-]?[0-9]*,[0-9]+", numeral):
             fault = f"{shown} has a decimal comma; write {shown.replace(',', '.')}"
+            fault += " in the file" + ", or say it behind its name, as in ?dt=0.005"
         elif not re.fullmatch(NUMBER_PATTERN, numeral) or not math.isfinite(
             to_float(numeral)
         ):
@@ -273,7 +276,7 @@ class RecordText:
         return [
             each
             for each in said
-            if unit_behind(whole_number(each.value)) in _TIME_UNITS
+            if unit_behind(whole_number(each.value)) in TIME_UNITS
             and re.fullmatch(NUMBER_PATTERN, whole_number(each.value).partition(" ")[0])
         ]
 
@@ -300,7 +303,7 @@ class RecordText:
         """The size of a unit of time [s]; words that join say nothing where none has to
         stand.
         """
-        factor = _TIME_UNITS.get(unit.strip(" .").lower())
+        factor = TIME_UNITS.get(unit.strip(" .").lower())
         if factor is None and (is_unit or unit.strip(" .").lower() not in _JOINING):
             raise self.fault(
                 f"a time in {unit[:_SHOWN]!r} is not known; write s, or ms, or say the"
@@ -329,6 +332,8 @@ class RecordText:
         """The one unit of acceleration that several statements name."""
         if self.multiple is not None:  # the user says what a value is
             statements = [each for each in statements if canonical_unit(each.value)]
+            if len({canonical_unit(each.value) for each in statements}) > 1:
+                return self.units
 
         def meaning(each: Statement) -> str:
             if (unit := canonical_unit(each.value)) is None:

@@ -21,6 +21,16 @@ _KEYS = {
 """Keys of header lines by the fields of a `Recording`."""
 
 
+def without_recording(line: str) -> str:
+    """A line without what it says of the station, the earthquake and times."""
+    if titled_recording(line):
+        return ""
+    for name, pattern in _KEYS.items():
+        if name != "direction":
+            line = re.sub(pattern, ";", line, flags=re.IGNORECASE)
+    return line
+
+
 def recording_of(lines: Iterable[str]) -> Recording:
     """The recording that lines with keys describe, or a title as the PEER flatfiles have.
 

@@ -1,0 +1,298 @@
+"""What lines of a header say by their values, whatever their keys are.
+
+A key that is not known says nothing, in the language of the file or in another; a number
+or a unit behind it does. What is neither understood nor said of something else than the
+motion is never skipped: it is refused with its words and what to write.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from rpscli.records.formats.record_text import TIME_UNITS, Array, RecordText
+from rpscli.records.formats.statements import STATED_PATTERN, Statement
+from rpscli.records.quantities import (
+    ACCELERATIONS,
+    UNIT_PATTERN,
+    canonical_unit,
+    last_digit,
+    to_float,
+)
+from rpscli.records.words import (
+    COUNTED,
+    DIRECTIONS,
+    FACTORS,
+    LIMITS,
+    NOT_OF_THE_MOTION,
+    PEAKS,
+    SAMPLING,
+    SERIALS,
+    STEPS,
+    TIMES,
+    UNITS,
+    folded,
+    speaks_of,
+)
+
+_UNIT = rf"(?:{UNIT_PATTERN})"
+_WHOLE_UNIT = re.compile(rf"[\[(]?\s*({_UNIT})\s*[\])]?\.?", re.IGNORECASE)
+_UNIT_INSIDE = re.compile(
+    rf"(?:(?<!\w)(?:in|of|en|auf|als|de|em|w|v|в)\s+|[\[(]\s*)({_UNIT})\s*(?:[\])]|$|[,;.])",
+    re.IGNORECASE,
+)
+_NUMBER = STATED_PATTERN.replace("[+-]?", "[-+−]?", 1)
+_BEHIND = rf"\s*({_UNIT}|[^\W\d][\w/^*.%²-]{{0,15}}|%\w*)?"
+_KEYED = re.compile(
+    rf"([^\W\d_][^:=;|]*?)\s*[:=]\s*[\[(]?\s*({_NUMBER})(?![\d.,:])[\])]?{_BEHIND}",
+    re.IGNORECASE,
+)
+_AT_THE_END = re.compile(
+    rf"\W*([^\W\d_][^:=;|]*?)\s+({_NUMBER})(?![\d.,:]){_BEHIND}\s*[.)\]]*", re.IGNORECASE
+)
+_ALONE = re.compile(rf"\s*[x×*]?\s*({_NUMBER})()\s*", re.IGNORECASE)
+_PART = re.compile(r"[;|\t]|,(?=\s*[^\W\d][^:=,]*[:=])|\s{2,}(?=[^\W\d][^:=]*[:=])")
+_TIMES = re.compile(
+    r"\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}(?:T(?=\d))?|\d{1,2}:\d{2}(?!\d)(?::\d{2}(?:\.\d*)?)?Z?"
+    r"|\b\d{1,2}\.? [^\W\d]{3,9}\.?,? \d{4}\b|\b[^\W\d]{3,9}\.? \d{1,2},? \d{4}\b"
+)
+"""Dates and clock times, which state nothing of the values."""
+_OF_A_SOURCE = re.compile(r"[?&]\w+=\S*|\S+:/\S*")
+_YEAR = re.compile(r"(?:18|19|20)\d\d")
+_IN_BRACKETS = re.compile(r"[\[(]\s*([^\])]*?)\s*[\])]")
+
+_HERTZ = re.compile(r"hz|гц|sps|1/s|samples?(?:/s\w*|persec\w*)?|ヘルツ|赫兹")
+
+_SCALED = re.compile(
+    r"(?<![?&(_-])\b(?:normali[sz]ed|normalis\w+|normier\w*|scaled|rescaled|skaliert|escalad\w+"
+    r"|scalat[oi]|normalizzat\w+|normalizad\w+|olceklen\w+|масштабир\w+|нормир\w+|amplified"
+    r"|divided?|dividid\w+|divis[oi]|multipli\w+|moltiplicat\w+|integrated|integriert"
+    r"|integrad\w+|integrat[oi]|half|halved|doubled|twice|x\s*\d|\*\s*\d)\b|^\W*[x×*]\s*\d"
+)
+"""Words of sentences that say that values are others than they look."""
+_RAW = re.compile(
+    r"\b(?:raw|uncorrected|unprocessed|unfiltered|unkorrigiert|non corrig\w+|non corrett\w+"
+    r"|no corregid\w+|sin corregir|ham (?:veri|kayit)|duzeltilmemis|brut|необработан\w+)\b"
+)
+
+
+class Said(NamedTuple):
+    """A number that a line states: its key, its numeral, what stands behind it or in
+    brackets of the key, the line (from zero), and its words.
+    """
+
+    key: str
+    numeral: str
+    behind: str
+    line: int
+    words: str
+
+    @property
+    def number(self) -> float:
+        """The number, a decimal comma as a point."""
+        return to_float(self.numeral.replace(",", ".").replace("−", "-"))
+
+    @property
+    def unit(self) -> str | None:
+        """The unit of acceleration that it is in; None without one."""
+        inside = _UNIT_INSIDE.search(self.key)
+        return canonical_unit(self.behind or (inside[1] if inside else "") or "-")
+
+    @property
+    def unit_of_time(self) -> str:
+        """What is behind it, or in brackets of its key, folded, without blanks."""
+        bracket = _IN_BRACKETS.search(self.key)
+        own = self.behind or (bracket[1] if bracket else "")
+        return re.sub(r"[\s.]", "", folded(own))
+
+
+class Facts(NamedTuple):
+    """What was read of a motion: values in a unit of so many m/s2, and the step [s]."""
+
+    values: Array
+    unit: str
+    factor: float
+    step: float
+    numbers: int  # in the file
+
+    @property
+    def peak(self) -> float:
+        """The largest value."""
+        return float(np.max(np.abs(self.values)))
+
+
+@dataclass(frozen=True)
+class HeaderLines:
+    """Lines of a header that no reader has understood yet.
+
+    `lines` are numbered; with `loose` ones also `words 0.5` at the end of a line and a
+    number by itself are statements, not in titles of recordings.
+    """
+
+    text: RecordText
+    lines: Sequence[tuple[int, str]]
+    loose: bool = True
+
+    @property
+    def parts(self) -> Iterator[tuple[int, str]]:
+        """Parts of the lines, with neither dates, clock times nor options of sources."""
+        for index, line in self.lines:
+            bare = _OF_A_SOURCE.sub(" ", line)
+            for part in _PART.split(_TIMES.sub(" ", bare)):
+                if part.strip():
+                    yield index, part.strip()
+
+    @property
+    def numbers(self) -> Iterator[Said]:
+        """Numbers that the lines state, with their keys."""
+        for index, part in self.parts:
+            found = [*_KEYED.finditer(part)]
+            if not found and self.loose and not re.search(r"[:=]\s*\S", part):
+                whole = _AT_THE_END.fullmatch(part)
+                if whole and not _YEAR.fullmatch(whole[2]):
+                    found = [whole]
+                elif (alone := _ALONE.fullmatch(part)) and not _YEAR.fullmatch(alone[1]):
+                    yield Said("", alone[1], "", index, part)
+            for match in found:
+                yield Said(match[1], match[2], match[3] or "", index, part[:60])
+
+    def units(self) -> list[Statement]:
+        """Units of acceleration that stand as values, whatever their keys are."""
+        found = []
+        for index, part in self.parts:
+            key, mark, value = part.rpartition(":")
+            if not mark:
+                key, mark, value = part.rpartition("=")
+            bare = re.search(r"\d", _IN_BRACKETS.sub("", value)) is None
+            whole = _WHOLE_UNIT.fullmatch(value.strip())
+            inside = _UNIT_INSIDE.search(value) if bare and not whole else None
+            if not (match := whole or inside):
+                continue
+            short = match[1].lower() in ("g", "gravity") and mark and whole
+            other = speaks_of(key, NOT_OF_THE_MOTION) and not speaks_of(key, UNITS)
+            if short and other:
+                continue
+            found.append(Statement(key.strip() or "the header", match[1], index))
+        return found
+
+    def steps(self) -> list[Statement]:
+        """Steps and rates of sampling in other words than those of a reader [s]."""
+        return [
+            Statement(said.key.strip(), f"{step:.15g}", said.line)
+            for said in self.numbers
+            if (step := _step_of(said)) is not None
+        ]
+
+
+def _step_of(said: Said) -> float | None:
+    """The step that a statement is of [s]; None if it is of something else."""
+    number = said.number
+    samples = speaks_of(said.key, SAMPLING)
+    others = FACTORS | COUNTED | (NOT_OF_THE_MOTION - TIMES)
+    if number <= 0.0 or not (samples or speaks_of(said.key, STEPS)):
+        return None
+    behind = said.unit_of_time
+    if behind and behind in TIME_UNITS:
+        return None if speaks_of(said.key, others) else number * TIME_UNITS[behind]
+    if speaks_of(said.key, others):
+        return None
+    if samples and (_HERTZ.fullmatch(behind) or (not behind and number > 1.0)):
+        return 1.0 / number
+    return number if not behind and number <= 0.5 else None
+
+
+def doubts_of_header(header: HeaderLines, facts: Facts) -> list[str]:
+    """What is to be said of statements that the samples contradict.
+
+    Raises RecordError for numbers and sentences that are not understood, unless the user
+    says what a value is.
+    """
+    doubts = []
+    for said in header.numbers:
+        if doubt := _contradiction(said, facts):
+            doubts.append(doubt)
+        elif header.text.multiple is None and not _is_understood(said, facts):
+            _refuse(header.text, said.words, said.line, facts)
+    for index, line in header.lines:
+        plain = folded(line)
+        if header.text.multiple is None and _SCALED.search(plain):
+            _refuse(header.text, line.strip()[:60], index, facts)
+        if match := _RAW.search(plain):
+            doubts.append(f"the header says {match[0]!r}: give the corrected record")
+    return doubts
+
+
+def _refuse(text: RecordText, words: str, line: int, facts: Facts) -> None:
+    raise text.fault(
+        f"{words!r} is not understood, and may change what the values are; they were read"
+        f" in {facts.unit}, {facts.step:g} s apart: if that is right, say"
+        f" ?units=1 {facts.unit}",
+        line,
+    )
+
+
+def _contradiction(said: Said, facts: Facts) -> str:
+    """A doubt about another peak, or an acceleration above that of the values."""
+    peak = _states_peak(said)
+    if (said.unit is None and not peak) or speaks_of(said.key, LIMITS | FACTORS):
+        return ""
+    each = _size(said, facts)
+    wanted = each * abs(said.number)
+    if wanted - facts.peak <= _rounding(said) * each and (
+        not peak or _is_peak(said, facts)
+    ):
+        return ""
+    return f"the values peak at {facts.peak:.6g} and the header says {wanted:.6g}"
+
+
+def _is_understood(said: Said, facts: Facts) -> bool:
+    """True of what the samples confirm, and of what is said of something else."""
+    whole = said.unit is None and said.number == round(said.number)
+    if _is_peak(said, facts) or (whole and said.number in (0.0, 1.0)):
+        return True
+    counts = whole and not said.behind and speaks_of(said.key, COUNTED)
+    if counts and not speaks_of(said.key, SERIALS):
+        return said.number in (facts.values.size, facts.numbers)
+    if speaks_of(said.key, FACTORS) and not speaks_of(said.key, LIMITS):
+        return False
+    other = speaks_of(said.key, NOT_OF_THE_MOTION | LIMITS | DIRECTIONS)
+    return other or _is_of_time(said, facts)
+
+
+def _states_peak(said: Said) -> bool:
+    """True of a largest value, of nothing else by its words and its unit."""
+    whose = speaks_of(said.key, NOT_OF_THE_MOTION - TIMES)
+    return (
+        speaks_of(said.key, PEAKS) and not whose and (not said.behind or bool(said.unit))
+    )
+
+
+def _size(said: Said, facts: Facts) -> float:
+    """The unit of a statement in those of the values."""
+    return ACCELERATIONS[said.unit] / facts.factor if said.unit else 1.0
+
+
+def _rounding(said: Said) -> float:
+    """What the printed digits of a statement leave open."""
+    return 0.51 * last_digit(said.numeral.replace(",", ".")) + 1e-3 * abs(said.number)
+
+
+def _is_peak(said: Said, facts: Facts) -> bool:
+    """True of the largest acceleration."""
+    if said.unit is None and not _states_peak(said):
+        return False
+    each = _size(said, facts)
+    return abs(abs(said.number) * each - facts.peak) <= _rounding(said) * each
+
+
+def _is_of_time(said: Said, facts: Facts) -> bool:
+    """True of the step, the rate of samples, their number and their duration."""
+    seconds = TIME_UNITS.get(said.unit_of_time, 1.0) * said.number
+    count = facts.values.size
+    known = (facts.step, count * facts.step, (count - 1) * facts.step)
+    near = any(abs(seconds - each) <= 1e-6 * facts.step for each in known)
+    return near or said.number == count or abs(said.number * facts.step - 1.0) < 1e-6

@@ -1,0 +1,144 @@
+"""Words of headers, titles and names of files, compared without accents and case.
+
+The one vocabulary of what a key of a header is about. Stems of four letters and more, and
+words of other scripts, are also found at the beginning of longer words.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Collection
+
+_ALONE = str.maketrans({"ı": "i", "ø": "o", "ł": "l", "đ": "d", "−": "-", "’": "'"})
+
+
+def folded(text: str) -> str:
+    """A text in small letters without accents.
+
+    >>> folded("Düşey"), folded("ÉCHELLE"), folded("DUSEY")
+    ('dusey', 'echelle', 'dusey')
+    """
+    apart = unicodedata.normalize("NFKD", text.translate(_ALONE)).casefold()
+    plain = "".join(each for each in apart if not unicodedata.combining(each))
+    return plain.translate(_ALONE)
+
+
+def words_of(text: str) -> list[str]:
+    """The words of a text, folded; digits and punctuation part them."""
+    return re.findall(r"[^\W\d_]+", folded(text))
+
+
+def speaks_of(text: str, vocabulary: Collection[str]) -> bool:
+    """True if a word of a text is in a vocabulary, or begins with a stem of it."""
+    return any(_begins(word, vocabulary) for word in words_of(text))
+
+
+def _begins(word: str, vocabulary: Collection[str]) -> bool:
+    if word in vocabulary:
+        return True
+    shortest = 4 if word.isascii() else 2
+    return any(word[:n] in vocabulary for n in range(shortest, len(word)))
+
+
+def _vocabulary(text: str) -> frozenset[str]:
+    return frozenset(map(folded, text.split()))
+
+
+FACTORS = _vocabulary(
+    "factor factors faktor facteur fattore fator coefficient coeff coefficiente koeffizient"
+    " katsayi katsayisi carpan scale scaling scalefactor echelle escala scala massstab"
+    " olcek skala skalier masshtab масштаб коэффициент множитель коеф multipl mult"
+    " multiplier sf calib calibration kalibrier kalibrasyon kalibr gain amplif verstark"
+    " kazanc sensib lsb counts count conversion convers umrechn donusum divis divid teiler"
+    " normali normier resolution resolucion auflosung cozunurluk bili beilv beishu xishu"
+    " baritsu keisu bairitsu 倍率 係数 系数 比例 換算 συντελεστης κλιμακα wspolczynnik"
+    " skalowan mnoznik multiplicador multiplicateur moltiplicatore weight"
+)
+"""What is said of a factor on the values."""
+
+TIMES = _vocabulary(
+    "at bei time times hora heure ora uhr uhrzeit saat jam время 時刻 时刻 时间 utc gmt jst temps"
+    " tiempo tempo zaman zeit"
+)
+NOT_OF_THE_MOTION = _vocabulary(
+    "lat latitude latitud latitudine breite breitengrad enlem широта 緯度 纬度 szerokosc"
+    " lon long lng longitude longitud longitudine lange langengrad boylam долгота 経度 经度"
+    " coord coordinates koordin easting northing utm"
+    " mag magnitude magnitud magnitudo buyukluk buyuklugu магнитуда 規模 震级 m mw ml ms mb"
+    " mj md mwg moment dist distance distancia distanza distanz entfernung uzaklik mesafe"
+    " расстояние 距離 距离 odleglosc repi rjb rrup rhyp rx ry epic epicen epicentre"
+    " hypo hypocen ipocent focal foco focus depth tiefe derinlik profondeur profundidad"
+    " profundidade profondita глубина 深さ 深度 glebokosc"
+    " vs vs30 soil site class zone terrain ground geology clase boden zemin"
+    " corner cutoff cut hp lp hpf lpf highpass lowpass bandpass high low filter filtre"
+    " filtro filtrage filt фильтр npass pole poles ripple taper butterworth"
+    " order ordre orden ordnung ordine mertebe npol nroll"
+    " id no nr serial seri serie record recno rec rsn eqid ssn evid case file line lines"
+    " header page part volume vol version ver release copy tel phone fax zip code"
+    " year date datum fecha fech tarih jahr annee ano дата год 年 日付 日期"
+    ""
+    " damping damp dampfung amortiguamiento amortissement smorzamento sonum затухание"
+    " natural nat azimuth azimut acimut strike dip rake slip inc inclination cmpinc cmpaz"
+    " elev elevation altitude alt altitud altitudine kot quota height hohe altura yukseklik"
+    " hauteur высота 標高 高程 intensity mmi msk jma siddet stress fault arias ia cav pgv pgd"
+    " housner temperature battery gps latency network trigger threshold tetik umbral"
+    " soglia bits bit adc channels channel canal kanal chan ch station sta array component"
+    " comp location floor pre preevent posttrigger postevent delay latenz offset mean average"
+    " mittelwert media moyenne promedio ortalama baseline zero start begin end duration dauer"
+    " duracion duree durata sure suresi длительность usable bandwidth nyquist checksum crc"
+    " back backazimuth incidence ray sv velocity vel displacement disp rupture rvt seed"
+)
+"""What is said of the earthquake, the station, the instrument, the file."""
+NOT_OF_THE_MOTION |= TIMES
+
+PEAKS = _vocabulary(
+    "pga pha pgah pgav peak amax max maximum maximal maximale maxima maximo massimo massima"
+    " maksimum maksimal maxi picco pico pic spitze spitzen spitzenwert spitzenbeschleunigung"
+    " buyuk tepe максимум макс максимальное пик пиковое saidai zuida 最大 μεγιστη szczyt"
+)
+"""What is said of a largest value."""
+
+LIMITS = _vocabulary(
+    "full fullscale fs range clip clipping saturation messbereich rango trigger"
+    " threshold umbral soglia tetik max_range"
+)
+"""What is said of the range of an instrument, in units of acceleration."""
+
+SAMPLING = _vocabulary(
+    "sampl sampling samplerate abtast campion muestre muestra echantill orneklem дискрет"
+    " опрос 采样 取样 採樣 取樣 サンプリング サンフリンク δειγματ amostra caiyang vzork probkow"
+    " sps fs"
+)
+STEPS = _vocabulary(
+    "dt delta step timestep paso pas passo adim adimi adimlari schritt zeitschritt"
+    " schrittweite интервал шаг 間隔 间隔 刻み krok korak intervalo intervalle intervall"
+    " intervallo aralig araligi interval bu buchang kankaku"
+)
+"""What is said of the time between samples."""
+
+COUNTED = _vocabulary(
+    "npts ndata points point samples data datos dati daten werte values valores valori"
+    " veri nokta deger degerler punti puntos punkte echantillons donnees valeurs точек"
+    " отсчет отсчетов данных 点数 点 データ数 テータ 数据 anzahl pontos dados probek"
+)
+"""What is counted: with a number of them, that of the values."""
+SERIALS = _vocabulary(
+    "format version type page set file base bank center centre id serial"
+)
+
+DIRECTIONS = _vocabulary(
+    "component comp componente composante komponente komponent bilesen bileseni"
+    " компонента компонент kanal channel chan canal canale direction direccion direzione"
+    " direcao dir richtung yon yonu направление sens sentido sensor_orientation orientation"
+    " orientacion orientazione orientamento ausrichtung azimuth azimut acimut azimuth_deg"
+    " heading hcomp fangxiang fangwei hoko houkou 方向 方位 成分 分量 συνιστωσα διευθυνση"
+    " skladowa kierunek slozka smer axis eje asse achse eksen ось axe orient"
+)
+"""What is said of the direction of a component."""
+
+UNITS = _vocabulary(
+    "unit units unidad unidades unita unite unites einheit einheiten birim birimi единица"
+    " единицы ед 単位 单位 unidade jednotka jednostka mertekegyseg eenheid enhet danwei tani"
+    " μοναδα μοναδες"
+)
