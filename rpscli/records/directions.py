@@ -1,12 +1,16 @@
 """Meaning of names of components: horizontal, with an azimuth where it is told, or up.
 
-The one vocabulary of directions: of headers, titles of columns and names of files.
+The one vocabulary of directions: of headers, titles of columns and names of files. Words
+are compared without accents and case.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import NamedTuple
+
+from rpscli.records.words import folded
 
 
 class RecordDirection(NamedTuple):
@@ -19,27 +23,59 @@ class RecordDirection(NamedTuple):
 UP = RecordDirection(vertical=True)
 HORIZONTAL = RecordDirection(vertical=False)
 
-_VERTICAL = re.compile(
-    r"v|z|u|d|up|ud|du|dn|dwn|down|vrt|vert|vertical|vertic\w*|updown|upward\w*|downward\w*"
-    r"|(?:gm|ch|comp|acc?|a)\d*z|[hbelsc][nhlgp]z\d*|hz|updn|vtcl|ve"
-    r"|haut|hoch|vertikal|arriba|d[uü][sş]ey|верт\w*|上下|κατακ\w*",
-    re.IGNORECASE,
+_VERTICAL_WORDS = re.compile(
+    r"up|ud|updn|updo|updown|upward\w*|dwn|down|downward\w*|vrt|vrtcl|vert|verti[ck]\w*|vtcl"
+    r"|vertic\w*|haut|hoch|senkrecht|lotrecht|arriba|alto|dusey|dikey|dus|верт\w*|отвесн\w*"
+    r"|上下|垂直|竖直|竖向|鉛直|铅直|수직|上|joge|jouge|enchoku|chui?zhi|shuxiang|shangxia"
+    r"|katak\w*|κατακ\w*|pionow\w*|svisl\w*|vertikaln\w*|okomit\w*|verdikal|lodret|fugg\w*"
+    r"|thangdung|qaim|tegak|عمودي|אנכי|nadir|zenith"
 )
-_COMPASS = {"n": 0.0, "e": 90.0, "s": 180.0, "w": 270.0}
-_AXIS = re.compile(r"ns|sn|ew|we|nsc|ewc|сю|юс|вз|зв", re.IGNORECASE)
-_AXIS_AZIMUTHS = {**dict.fromkeys("nsсю", 0.0), **dict.fromkeys("ewвз", 90.0)}
-_BEARING = re.compile(r"([ns])(\d{1,2})([ew])", re.IGNORECASE)
+"""Words for up and down, of two letters and more, that say nothing else."""
+_VERTICAL_SIGNS = re.compile(
+    r"v|z|u|d|du|dn|ve|vt|hz|v\d|cz|sx|(?:gm|ch|comp|acc?|a)\d*z|(?:acc?|a|comp)\d*v"
+    r"|[hbelsc][nhlgp]z\d*"
+)
+_COMPASS = {
+    "n": 0.0, "e": 90.0, "s": 180.0, "w": 270.0,
+    **dict.fromkeys(
+        ("north", "nord", "norte", "kuzey", "север", "с", "βορρας", "kita", "bei", "北"), 0.0
+    ),
+    **dict.fromkeys(
+        ("east", "ost", "este", "est", "dogu", "восток", "в", "oost", "higashi", "dong", "東",
+         "东"), 90.0
+    ),
+    **dict.fromkeys(
+        ("south", "sud", "sued", "sur", "guney", "юг", "ю", "zuid", "minami", "nan", "南"), 180.0
+    ),
+    **dict.fromkeys(
+        ("west", "ouest", "oeste", "ovest", "bati", "запад", "з", "nishi", "xi", "西"), 270.0
+    ),
+}  # fmt: skip
+_AXES = {
+    **dict.fromkeys(
+        ("ns", "sn", "nsc", "сю", "юс", "kg", "gk", "northsouth", "nanboku", "nambok", "beinan",
+         "nanbei", "南北", "北南", "nordsud", "nortesur", "kuzeyguney", "севюг", "сев"), 0.0
+    ),
+    **dict.fromkeys(
+        ("ew", "we", "ewc", "вз", "зв", "db", "bd", "eastwest", "tozai", "touzai", "dongxi",
+         "xidong", "東西", "东西", "ostwest", "esteoeste", "dogubati", "вост", "oe", "eo"), 90.0
+    ),
+}  # fmt: skip
+"""Words of both ends of an axis, at the azimuth of one of them."""
+_BEARING = re.compile(r"([ns])(\d{1,2})([ew])")
 _NAMED = re.compile(
-    r"x|y|l|t|r|h|h1|h2|h|long\w*|trans\w*|radial|tran|(?!ch\d)[hbelsc][nhlgp][nexy12]\d*"
-    r"|(?:gm|ch|comp|acc?|a)\d*[xy]|north|south|east|west|northsouth|eastwest"
-    r"|nord|norte|kuzey|север|ost|este?|do[gğ]u|восток|ouest|oeste|bat[ıi]|запад"
-    r"|sud|süd|sur|g[uü]ney|юг|南北|東西|db|kg",
-    re.IGNORECASE,
+    r"x|y|l|t|r|h|h1|h2|nb|dx|fn|fp|long\w*|trans\w*|radial|tran|hcomp|horiz\w*|yatay"
+    r"|(?!ch\d)[hbelsc][nhlgp][12]\d*|(?:gm|ch|comp|acc?|a)\d*[xy]"
 )
-_AZIMUTH = re.compile(
-    r"(?:az|azimuth)?(0|\d{2,3}|\d(?=d|°))(?:deg|°|degrees)?", re.IGNORECASE
-)
+_SEED = re.compile(r"(?!ch\d)[hbelsc][nhlgp]([nesw])\d*|[hbelsc][nhlgp]([xy])\d*")
+_AZIMUTH = re.compile(r"(?:az|azimuth)?(0|\d{2,3}|\d(?=d|°))(?:deg|°|degrees)?")
 """An azimuth; 1, 2 and 3 alone are numbers of components."""
+
+
+def _word(text: str) -> str:
+    """A name without punctuation, and without `component` before it."""
+    bare = re.sub(r"\([+-]?\)|[\s_.+-]", "", folded(text)).removeprefix("component")
+    return re.sub(r"^comp(?:onent)?(?=[a-z])", "", bare)
 
 
 def direction_of(text: str) -> RecordDirection | None:
@@ -48,20 +84,51 @@ def direction_of(text: str) -> RecordDirection | None:
     >>> direction_of("U-D").vertical, direction_of("N00E").azimuth, direction_of("Pacoima")
     (True, 0.0, None)
     """
-    word = re.sub(r"\([+-]?\)|[\s_.+-]", "", text).removeprefix("component")
-    word = re.sub(r"^comp(?:onent)?(?=[a-z])", "", word, flags=re.IGNORECASE)
-    if _VERTICAL.fullmatch(word):
+    word = _word(text)
+    if _VERTICAL_WORDS.fullmatch(word) or _VERTICAL_SIGNS.fullmatch(word):
         return UP
-    small = word.lower()
-    if small in _COMPASS:
-        return RecordDirection(vertical=False, azimuth=_COMPASS[small])
+    azimuth = _COMPASS.get(word, _AXES.get(word))
+    if azimuth is not None:
+        return RecordDirection(vertical=False, azimuth=azimuth)
     if match := _BEARING.fullmatch(word):
         return RecordDirection(vertical=False, azimuth=_of_bearing(*match.groups()))
-    if _AXIS.fullmatch(word):
-        return RecordDirection(vertical=False, azimuth=_AXIS_AZIMUTHS[small[0]])
+    if match := _SEED.fullmatch(word):
+        return RecordDirection(vertical=False, azimuth=_COMPASS.get(match[1] or ""))
     if (match := _AZIMUTH.fullmatch(word)) and float(match[1]) <= 360.0:
         return RecordDirection(vertical=False, azimuth=float(match[1]))
     return HORIZONTAL if _NAMED.fullmatch(word) else None
+
+
+def says_up(text: str) -> bool:
+    """True of a word for up or down that can hardly mean anything else.
+
+    >>> says_up("Düşey"), says_up("VERTICALE"), says_up("D")
+    (True, True, False)
+    """
+    return bool(_VERTICAL_WORDS.fullmatch(_word(text)))
+
+
+def directions_of(words: Sequence[str]) -> list[RecordDirection | None]:
+    """Directions of words that stand beside each other.
+
+    D beside K, G or B is the east in Turkish, and V beside Z, with S or alone, in Slavic
+    languages; of H1, H2, 3 and the like the third is not known.
+    """
+    small = {_word(word) for word in words}
+    east = set[str]()
+    if len(small) > 1 and small <= {"k", "g", "d", "b"}:
+        return [
+            RecordDirection(vertical=False, azimuth={"k": 0.0, "d": 90.0, "g": 180.0}.get(
+                _word(word), 270.0)) for word in words
+        ]  # fmt: skip
+    if {"z", "v"} <= small:
+        east = {"v"}
+    return [
+        RecordDirection(vertical=False, azimuth=90.0)
+        if _word(word) in east
+        else direction_of(word)
+        for word in words
+    ]
 
 
 def _of_bearing(begin: str, degrees: str, towards: str) -> float:
@@ -78,8 +145,21 @@ _QUALIFIED = re.compile(
 
 
 def direction_in(name: str) -> RecordDirection | None:
-    """The direction that a name is, or that stands behind `acc` in it, as in `acc_ns`."""
+    """The direction that a name is, that stands behind `acc` in it, as in `acc_ns`, or is
+    its last word, as in `Acc. UD`.
+    """
     if (found := direction_of(name)) is not None:
         return found
-    match = _QUALIFIED.fullmatch(name.strip())
-    return direction_of(match[1]) if match else None
+    if match := _QUALIFIED.fullmatch(name.strip()):
+        return direction_of(match[1])
+    words = re.split(r"[\s_.,-]+", name.strip())
+    if says_up(words[-1]):
+        return UP
+    known = [way for word in words if (way := direction_of(word)) is not None]
+    others = [word for word in words if direction_of(word) is None]
+    remarks = all(_REMARK.fullmatch(folded(word)) for word in others)
+    return known[0] if len(known) == 1 and remarks else None
+
+
+_REMARK = re.compile(r"acc\w*|ground|filt\w*|corr\w*|proc\w*|comp\w*|dir\w*|data|deg")
+"""Words beside that of a direction, which say nothing of it."""

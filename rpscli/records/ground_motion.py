@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.errors import RecordError, is_number, require_fields, require_kind, told
-from rpscli.records.directions import direction_of
+from rpscli.records.directions import direction_in
 from rpscli.shown import Frozen, Shown, frozen, with_unit
 
 if TYPE_CHECKING:
@@ -46,16 +46,16 @@ class Recording(NamedTuple):
     @property
     def is_vertical(self) -> bool:
         """True if the component is stated to be a vertical one."""
-        direction = direction_of(self.direction)
+        direction = direction_in(self.direction)
         return direction is not None and direction.vertical
 
     @property
     def in_borehole(self) -> bool:
-        """True if the instrument is stated to be below the ground."""
+        """True if the instrument is stated to be below the ground, or in a building."""
         return _BOREHOLE.search(self.station) is not None
 
 
-_BOREHOLE = re.compile(r"bore-?hole|down-?hole|\bdepth\b", re.IGNORECASE)
+_BOREHOLE = re.compile(r"bore-?hole|down-?hole|\bdepth\b|\bin a building$", re.IGNORECASE)
 
 UNKNOWN = Recording()
 

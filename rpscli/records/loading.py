@@ -33,16 +33,20 @@ from rpscli.errors import (
 )
 from rpscli.machine import mode_of
 from rpscli.records import made, sets
-from rpscli.records.directions import direction_of
+from rpscli.records.families import (
+    direction_by_name,
+    require_horizontal_titles,
+    require_two,
+)
 from rpscli.records.ground_motion import (
     GroundMotion,
     MotionComponents,
     rotated,
     scale_doubts,
 )
+from rpscli.records.pairs import beside_each_other
 from rpscli.records.recordings import (
     channels,
-    earthquake,
     pairs_among,
     stated,
     vertical_of,
@@ -59,7 +63,6 @@ from rpscli.records.source import (
     is_file,
     split_options,
 )
-from rpscli.records.when import seconds_of
 
 _MAKERS: dict[str, Callable[[Source], GroundMotion]] = {
     SET: sets.load_component,
@@ -178,7 +181,7 @@ def _components(of: Source, folder: Path | None) -> tuple[GroundMotion, GroundMo
     if of.scheme == SET and of.place not in sets.PAIRS:
         raise sets.unknown(of)  # before a component is refused that nobody wrote
     one, other = (load_record(each, folder=folder) for each in of.components or ())
-    return one, _beside(one, other, of)
+    return one, beside_each_other(one, other, of)
 
 
 def _read(of: Source, folder: Path | None) -> GroundMotion:
@@ -186,7 +189,12 @@ def _read(of: Source, folder: Path | None) -> GroundMotion:
 
     path = _located(of.place, folder)
     _require_file(path, of)
-    return read_record(path, of)
+    motion = read_record(path, of)
+    recording = motion.recording
+    if recording.direction or "channel" in of.values:
+        return motion
+    named = recording._replace(direction=direction_by_name(path.name))
+    return replace(motion, recording=named)
 
 
 def load_components(
@@ -227,104 +235,12 @@ def load_components(
         along = load_record(of, **how)
         if y is None:
             return MotionComponents(along, above)
-        across = _beside(along, load_record(y, **how), source)
+        across = beside_each_other(along, load_record(y, **how), source)
     else:
         given = {name: value for name, value in how.items() if name != "folder"}
         along, across = _components(_described(of, **given), folder)
     along = replace(along, name=_named(along, of, "both"), source=source)
     return MotionComponents(along, above, y=across).turned(of.rotation + rotation)
-
-
-_LATE = 10.0  # seconds between the starts of components of one recording at most
-
-
-def _beside(first: GroundMotion, second: GroundMotion, source: str) -> GroundMotion:
-    """The second component, unless both state to be of different
-    recordings, or the same one.
-    """
-    one = first.recording
-    other = second.recording
-    apart = _apart(one.start, other.start)
-    begun = seconds_of(one.origin), seconds_of(other.origin)
-    for name, differ in (
-        ("station", one.station != other.station),
-        ("event", earthquake(one.event) != earthquake(other.event)),
-        ("origin", _differ(begun) if None not in begun else one.origin != other.origin),
-        ("start", apart > _LATE),
-    ):
-        told = getattr(one, name), getattr(other, name)
-        if all(told) and differ:
-            raise RecordError(
-                f"{source}: both components are of one recording, and their headers state"
-                f" the {name} {told[0]!r} and {told[1]!r}; name two of one"
-            )
-    alike = (
-        one.direction
-        and one.direction == other.direction
-        and one.station == other.station
-    )
-    made = first.format in ("pulse", "synthetic")
-    if (first.digest == second.digest and not made) or alike:
-        raise RecordError(
-            f"{source}: both components are the same one,"
-            f" {one.direction or first.source}; name two of one recording"
-        )
-    for each in filter(lambda of: of.is_vertical, (one, other)):
-        raise RecordError(
-            f"{source}: {each.direction} is a vertical component; name two horizontal"
-            " ones, and that as `vertical`"
-        )
-    doubts = [*_angle_doubts(one.direction, other.direction, source)]
-    if apart > 0.5 * first.dt:
-        doubts.append(
-            f"its header states the start {other.start}, that of the other component"
-            f" {one.start}: line them up"
-        )
-    return replace(second, warnings=(*second.warnings, *doubts))
-
-
-def _differ(origins: tuple[float | None, float | None]) -> bool:
-    """True if two origins are more than a minute apart."""
-    one, other = origins
-    return one is not None and other is not None and abs(one - other) > 60.0
-
-
-LEAST_ANGLE = 30.0
-USUAL_ANGLE = 60.0
-"""Between components that are taken for a pair at right angles [deg]."""
-
-
-def _angle_doubts(one: str, other: str, source: str) -> Iterator[str]:
-    """A doubt about the angle between two directions; refuse those along one line."""
-    ways = direction_of(one), direction_of(other)
-    known = [way.azimuth for way in ways if way is not None and way.azimuth is not None]
-    if len(known) < 2:
-        return
-    turned = abs(known[0] - known[1]) % 180.0
-    angle = min(turned, 180.0 - turned)
-    if angle < LEAST_ANGLE:
-        raise RecordError(
-            f"{source}: components along {one} and {other} are {angle:g} degrees apart, and"
-            " a pair is taken for right angles; name two of different directions"
-        )
-    if angle < USUAL_ANGLE:
-        yield f"{one} and {other} are {angle:g} degrees apart, and taken for right angles"
-
-
-def _apart(one: str, other: str) -> float:
-    """Seconds between two times in the same format; none where one is not stated."""
-
-    def seconds(text: str) -> list[float]:
-        numbers = [float(number) for number in re.findall(r"\d+(?:\.\d+)?|\.\d+", text)]
-        if len(numbers) < 4:  # not apart: date, hour, minute, second
-            return numbers
-        return [*numbers[:-3], 3600.0 * numbers[-3] + 60.0 * numbers[-2] + numbers[-1]]
-
-    first = seconds(one)
-    second = seconds(other)
-    if not (first and second):
-        return 0.0
-    return abs(first[-1] - second[-1]) if first[:-1] == second[:-1] else float("inf")
 
 
 def expanded(
@@ -393,6 +309,7 @@ def _files(of: Source, folder: Path | None, notes: list[str]) -> list[Source]:
     names = _readable_names(of, files, notes)
     single = [each for name in names for each in channels(of.at(name), folder)]
     single = _above_ground(of, single, folder, notes)
+    require_horizontal_titles(single, folder)
     if upright := verticals(single, folder):
         left_out = [
             each.place if "channel" in of.values or "channel" not in each.values
@@ -428,14 +345,18 @@ def _once(
         if names:
             notes.append(f"{of}: {told}: {_some(names)}")
     again = {each for each, (_, one) in repeats.items() if one}
-    return [each for each in single if each not in again]
+    kept = [each for each in single if each not in again]
+    require_two({each: motions[each] for each in kept if each in motions}, folder)
+    return kept
 
 
 _BELOW_BY_NAME = re.compile(
-    r"bore-?hole|down-?hole|(?<![A-Za-z])GL-?[1-9]|(?<=[_ ])-\d+m(?![A-Za-z])",
+    r"bore-?hole|down-?hole|(?<![A-Za-z])(?:GL-?[1-9]|bottom|DH\d*|BH\d+|bedrock|pozz?o|forage"
+    r"|bohrloch|sondaj|kuyu|roof|basement|\d+(?:st|nd|rd|th)?[_ -]?floor|cati|bodrum)(?![A-Za-z])"
+    r"|(?<=[_ .-])-?\d+m(?![A-Za-z])|скважин|крыша",
     re.IGNORECASE,
 )
-"""Words in names of files of instruments below the ground."""
+"""Words in names of files of instruments below the ground, or in buildings."""
 
 
 def _above_ground(
@@ -450,7 +371,9 @@ def _above_ground(
     ]
     if not below or len(below) == len(single):
         return single
-    notes.append(f"{of}: in boreholes, left out: {_some([b.place for b in below])}")
+    notes.append(
+        f"{of}: in buildings or in boreholes, left out: {_some([b.place for b in below])}"
+    )
     return [each for each in single if each not in below]
 
 

@@ -41,7 +41,7 @@ UNIT_PATTERN = (
     rf"(?:[cm]?ms?|in|ft|[см]?м){_PER_SECOND_TWICE}"
     r"|(?:milli[- ]?|m)g(?![\w/])|%\s*(?:of\s+)?g(?![\w/])"
     r"|(?:10\s*\^\s*[-−]\s*3|1e-0?3)\s*\*?\s*g(?![\w/])|g\s*/\s*1000(?!\d)"
-    r"|gals?(?!\w)|гал(?!\w)|gravity\b|g's(?!\w)"
+    r"|gals?(?!\w)|гал(?!\w)|ガル|伽|gravity\b|g's(?!\w)"
     r"|g(?![\w/])"
 )
 """A regular expression (ignoring case) for the spellings of
@@ -128,7 +128,7 @@ def canonical_unit(text: str) -> str | None:
 _CYRILLIC = re.compile(r"([см]?м)/с(?:ек)?(?:\*{0,2}\^?2|/с(?:ек)?)")
 _LENGTHS = str.maketrans("см", "cm")
 _SPELT = {
-    **dict.fromkeys(("gals", "гал"), "gal"),
+    **dict.fromkeys(("gals", "гал", "ガル", "伽"), "gal"),
     **dict.fromkeys(("gravity", "g's"), "g"),
     **dict.fromkeys(("millig", "milli-g", "10-3g", "10-3*g", "1e-3g", "1e-03g"), "mg"),
     **dict.fromkeys(("g/1000", "0.001g", "mgs"), "mg"),

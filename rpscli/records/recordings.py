@@ -34,7 +34,7 @@ from typing import TYPE_CHECKING, Literal
 
 from rpscli.errors import RecordError
 from rpscli.records import sets
-from rpscli.records.directions import direction_of
+from rpscli.records.directions import directions_of
 from rpscli.records.ground_motion import UNKNOWN, Recording
 from rpscli.records.measures import Of
 from rpscli.records.source import FILE, SET, Source
@@ -84,6 +84,13 @@ def _contents(of: Source, folder: Path | None) -> tuple[Channel, ...]:
     from rpscli.records.formats import contents  # sets and pulses are not files
 
     return contents((folder or Path()) / Path(of.place).expanduser())
+
+
+def channel_titles(of: Source, folder: Path | None) -> list[str]:
+    """Titles of the columns of accelerations of a table; none of other files."""
+    held = _contents(of, folder)
+    in_one_line = len({each.line for each in held}) == 1
+    return [each.label for each in held] if in_one_line else []
 
 
 def stated(of: Source, folder: Path | None) -> Recording:
@@ -261,7 +268,9 @@ def verticals(sources: Iterable[Source], folder: Path | None) -> list[Source]:
     marked = {
         of: match
         for of in every
-        if single[of.place] == 1 and (match := _VERTICAL.fullmatch(of.place))
+        if single[of.place] == 1
+        and (match := _VERTICAL.fullmatch(of.place))
+        and not _LEVEL_WORD.search(match[1])
     }
     others = tuple(of.place for of in every if of not in marked)
     upright = _upright_by_word(every, folder)
@@ -270,13 +279,30 @@ def verticals(sources: Iterable[Source], folder: Path | None) -> list[Source]:
         for of in every
         if (of in marked and any(other.startswith(marked[of][1]) for other in others))
         or of.place in upright
-        or stated(of, folder).is_vertical
+        or (stated(of, folder).is_vertical and not _is_level_beside(of, every, folder))
     ]
     return found if len(found) < len(every) else []
 
 
+_LEVEL_WORD = re.compile(r"[-_. ](?:NS|EW|[NS]\d\d?[EW]|H1|H2)$", re.IGNORECASE)
+"""A direction before a word such as up, which is then that of a place."""
+
+
+def _is_level_beside(of: Source, sources: Iterable[Source], folder: Path | None) -> bool:
+    """True of a word for up that is one of a compass beside those of its recording."""
+    own = stated(of, folder)
+    beside = [
+        told.direction
+        for each in sources
+        if (told := stated(each, folder)).station == own.station and told.direction
+    ]
+    words = [own.direction, *beside]
+    way = directions_of(words)[0]
+    return way is not None and not way.vertical
+
+
 _LAST_WORD = re.compile(
-    r"(.*?[-_. ])([A-Za-z]{1,12}\d{0,3}[A-Za-z]?|\d{3})|(.*\d)([A-Za-z])"
+    r"(.*?[-_. ])([^\W\d_]{1,12}\d{0,3}[A-Za-z]?|\d{1,3})|(.*[\d)])([A-Za-z])"
 )
 """The last word of a name, or its last letter behind a digit, and what stands before."""
 
@@ -299,7 +325,8 @@ def _upright_by_word(sources: Iterable[Source], folder: Path | None) -> set[str]
             families.setdefault(beginning, []).append((of.place, match[2] or match[4]))
     upright = set()
     for members in families.values():
-        known = [(place, direction_of(word)) for place, word in members]
+        ways = directions_of([word for _, word in members])
+        known = [(place, way) for (place, _), way in zip(members, ways, strict=True)]
         level = [place for place, way in known if way is not None and not way.vertical]
         unknown = [place for place, way in known if way is None]
         up = [place for place, way in known if way is not None and way.vertical]

@@ -55,12 +55,14 @@ from rpscli.records.formats.titles import (
 )
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.quantities import (
+    ACCELERATIONS,
     NUMBER_PATTERN,
     UNIT_PATTERN,
     canonical_unit,
     numbers_in,
     numerals_in,
 )
+from rpscli.records.words import folded
 
 _STEP = (
     r"(?<![?&])\b(?:dt|delta[\s_]*t?|Δt|(?:time|sampling)[\s_]*(?:step|interval|period)"
@@ -140,7 +142,7 @@ def contents_of_columns(text: RecordText) -> list[Channel]:
         _refuse_other_quantities(text, table, titles)
     except RecordError as error:
         return [Channel(refusal=f"{error}".partition(": ")[2])]
-    held = [(i, title) for i, title in enumerate(titles) if title.kind == ACCELERATION]
+    held = [(i, titles[i]) for i in _accelerations(titles)]
     if len(held) < 2:
         return [Channel(recording=recording)]
     return [
@@ -149,25 +151,54 @@ def contents_of_columns(text: RecordText) -> list[Channel]:
     ]
 
 
-_IS_STATEMENT = re.compile(
-    rf":|=\s*[+-]?\.?\d|{PEAK_PATTERN}|\w\s.*(?<![\w.])\d[\d.,]*\s*(?:{UNIT_PATTERN}|[a-z]*/[a-z]+)?$",
-    re.IGNORECASE,
+_IS_STATEMENT = re.compile(rf":|=\s*[+-]?\.?\d|{PEAK_PATTERN}", re.IGNORECASE)
+_ENDS_IN_A_NUMBER = re.compile(
+    rf"\w\s.*(?<![\w.])\d[\d.,]*\s*(?:{UNIT_PATTERN}|[a-z]*/[a-z]+)?$", re.IGNORECASE
 )
+"""Words above one column that state a number, and are no title."""
 _OWN_TITLES = "Time (s)  Acceleration (m/s2)"
 """Of a file that rps wrote: its first line is a title in any words."""
 
 
 def _titles(text: RecordText, table: Table, width: int) -> list[ColumnTitle]:
-    """Titles of the columns that the user gives, else the last line that has a title for
-    each; empty without one.
+    """Titles of the columns that the user gives, held against those of the file, else
+    these.
     """
-    if text.columns is not None:
-        return _titles_given(text, text.columns, width)
+    own = _titles_of_file(table, width)
+    if text.columns is None:
+        return own
+    given = _titles_given(text, text.columns, width)
+    if own and text.multiple is None:
+        _compare(text, given, own)
+    return given
+
+
+def _compare(text: RecordText, given: list[ColumnTitle], own: list[ColumnTitle]) -> None:
+    """Refuse titles of the user that contradict units of those that are understood."""
+    for mine, title in zip(given, own, strict=True):
+        known = {mine.kind, title.kind} in ({ACCELERATION}, {TIME})
+        sizes = [
+            ACCELERATIONS.get(canonical_unit(each.unit or "-") or "") or each.unit.lower()
+            for each in (mine, title)
+        ]
+        if known and all(sizes) and sizes[0] != sizes[1]:
+            raise text.fault(
+                f"the columns that are given say {mine.unit} for {mine.name!r}, and the title"
+                f" {title.name!r} says {title.unit}; leave them out, or say what a value is:"
+                f" &units=1 {mine.unit}",
+                title.line,
+            )
+
+
+def _titles_of_file(table: Table, width: int) -> list[ColumnTitle]:
+    """The last line that has a title for each column; empty without one."""
     units: list[str] = []
     for line in reversed(table.header):
         for separator in (r"[,;\t]", r"\s{2,}|\t", r"\s+"):
             cells = _cells(line.value, separator)
             if len(cells) != width or any(map(_IS_STATEMENT.search, cells)):
+                continue
+            if width == 1 and _ENDS_IN_A_NUMBER.search(line.value):
                 continue
             bare = [cell.strip("()[]") for cell in cells]
             if not units and width > 1 and all(map(ANY_UNIT.fullmatch, bare)):
@@ -242,7 +273,7 @@ def _columns(text: RecordText, table: Table, titles: list[ColumnTitle]) -> Groun
     """One of several columns, with the times of another."""
     width = int(table.widths[0])
     values = table.values.reshape(-1, width)
-    series = [i for i, title in enumerate(titles) if title.kind == ACCELERATION]
+    series = _accelerations(titles)
     series = series or [i for i, title in enumerate(titles) if title.kind != TIME]
     place = series[0] if titles else 1
     if titles and (text.channel is not None or len(series) != 1):
@@ -258,7 +289,8 @@ def _columns(text: RecordText, table: Table, titles: list[ColumnTitle]) -> Groun
     title = titles[place] if titles else None
     stated = _stated(text, table, title)
     late: list[str] = []
-    if times is not None and not _are_counts(text, values[:, times]):
+    index = titles[times] if titles and times is not None else None
+    if times is not None and not _are_counts(text, values[:, times], stated, index):
         stated, late = _timed(text, table, stated, values[:, times], times, titles)
     words = table.words + (f", column {title.name}" if title and width > 2 else "")
     form = "two-column text" if width == 2 else "columns of text"
@@ -301,7 +333,8 @@ _UNDERSTOOD = re.compile(
 
 def _unread(text: RecordText, table: Table, titles: list[ColumnTitle]) -> HeaderLines:
     """The lines above the values without titles and what else was understood."""
-    titled = {title.line for title in titles}
+    own = titles if text.columns is None else _titles_of_file(table, int(table.widths[0]))
+    titled = {title.line for title in own}
     if any(of.value == _OWN_TITLES for of in table.header):
         titled.add(table.header[0].line)
     lines = [
@@ -317,9 +350,40 @@ def _is_row_of_units(line: str) -> bool:
     return len(cells) > 1 and all(map(ANY_UNIT.fullmatch, cells))
 
 
-def _are_counts(text: RecordText, times: Array) -> bool:
-    """True of numbers of samples in the place of times, where the user gives the step."""
-    return text.dt not in (None, 1.0) and bool(np.all(np.diff(times) == 1.0))
+def _accelerations(titles: list[ColumnTitle]) -> list[int]:
+    """Places of columns of accelerations, and of such as are not understood beside them.
+
+    A third column beside two components is not dropped because of its title.
+    """
+    known = [i for i, title in enumerate(titles) if title.kind == ACCELERATION]
+    unknown = [
+        i
+        for i, title in enumerate(titles)
+        if title.kind == UNKNOWN and (not title.unit or canonical_unit(title.unit))
+    ]
+    several = len(known) > 1 or (known and len(unknown) > 1)
+    return sorted([*known, *unknown]) if several else known
+
+
+def _are_counts(
+    text: RecordText, times: Array, stated: Stated, title: ColumnTitle | None
+) -> bool:
+    """True of numbers of samples in the place of times, where the step is told.
+
+    Refuses a column that is called a number, and holds none.
+    """
+    by_one = bool(np.all(np.diff(times) == 1.0))
+    if title is not None and title.kind == COUNT:
+        if not by_one:
+            raise text.fault(
+                f"the title {title.name!r} is that of numbers of samples, and its column"
+                f" advances by {times[1] - times[0]:g}; if it is time, say so:"
+                " ?columns=time,acceleration [UNIT]",
+                title.line,
+            )
+        return True
+    told = text.dt if text.dt is not None else stated.step
+    return by_one and told not in (None, 1.0)
 
 
 def _timed(
@@ -425,10 +489,32 @@ def _refuse_other_quantities(
                 " over time; give the acceleration record of the same station",
                 title.line,
             )
+    if text.columns is None:
+        _refuse_spectra(text, table)
     if ACCELERATION not in kinds:
         _refuse_other_series(text, table)
     if titles and (ACCELERATION not in kinds or _lacks_time(titles, kinds)):
         _refuse_titles(text, titles, kinds)
+
+
+_SPECTRUM = re.compile(
+    r"spectr(?:um|a)\b|spettr[oi]\b|spektr\w*|espectro|спектр\w*|φασμα|widmo|スペクトル|反应谱|谱"
+    r"|応答譜|hazard|fourier|\bpsd\b"
+)
+_MATCHED = re.compile(r"compat|match|target|uyumlu|angepasst|natural|filter|corner")
+
+
+def _refuse_spectra(text: RecordText, table: Table) -> None:
+    """Refuse a table under a line that calls it a spectrum, in several languages."""
+    for line in table.header:
+        plain = folded(line.value)
+        if _SPECTRUM.search(plain) and not _MATCHED.search(plain):
+            raise text.fault(
+                f"the header says {line.value[:60]!r}: this is a spectrum or a curve, not a"
+                " record over time; if it is one, say what the columns are:"
+                f" ?columns={'time,' if table.widths[0] > 1 else ''}acceleration [UNIT]",
+                line.line,
+            )
 
 
 def _refuse_other_series(text: RecordText, table: Table) -> None:
@@ -458,7 +544,9 @@ def _refuse_titles(
         f"{title.name[:30] or title.unit!r} is {kind or 'not understood'}"
         for title, kind in zip(titles, kinds, strict=True)
     ]
-    wanted = ",".join(["time", "acceleration [g]", *["-"] * (len(titles) - 2)])
+    units = [title.unit for title in titles if canonical_unit(title.unit or "-")]
+    unit = units[0] if units else "g"
+    wanted = ",".join(["time", f"acceleration [{unit}]", *["-"] * (len(titles) - 2)])
     raise text.fault(
         f"the titles are not those of a record over time: {'; '.join(said[:4])}; if it is"
         f" one, say what the columns are: ?columns={wanted}",

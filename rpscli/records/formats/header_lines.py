@@ -45,6 +45,7 @@ _UNIT_INSIDE = re.compile(
     rf"(?:(?<!\w)(?:in|of|en|auf|als|de|em|w|v|в)\s+|[\[(]\s*)({_UNIT})\s*(?:[\])]|$|[,;.])",
     re.IGNORECASE,
 )
+_UNIT_AT_THE_END = re.compile(rf"[^\W\d_]\s+(?!g$|gravity$)({_UNIT})$", re.IGNORECASE)
 _NUMBER = STATED_PATTERN.replace("[+-]?", "[-+−]?", 1)
 _BEHIND = rf"\s*({_UNIT}|[^\W\d][\w/^*.%²-]{{0,15}}|%\w*)?"
 _KEYED = re.compile(
@@ -170,6 +171,8 @@ class HeaderLines:
             bare = re.search(r"\d", _IN_BRACKETS.sub("", value)) is None
             whole = _WHOLE_UNIT.fullmatch(value.strip())
             inside = _UNIT_INSIDE.search(value) if bare and not whole else None
+            if bare and self.loose:
+                inside = inside or _UNIT_AT_THE_END.search(value)
             if not (match := whole or inside):
                 continue
             short = match[1].lower() in ("g", "gravity") and mark and whole

@@ -5,8 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from rpscli.records.directions import direction_of
+from rpscli.records.directions import direction_of, says_up
 from rpscli.records.ground_motion import Recording
+from rpscli.records.words import DIRECTIONS, folded, speaks_of
 
 _VALUE = r"\s*[:=]\s*([^;|#]*?)\s*(?=$|[;|#]|,\s*[A-Za-z ]+[:=])"
 _KEYS = {
@@ -39,48 +40,118 @@ def recording_of(lines: Iterable[str]) -> Recording:
     """
     said: dict[str, str] = {}
     titled: Recording | None = None
-    below = False
+    place = ""
     for line in lines:
-        below |= is_below_ground(line)
+        place = place or place_of(line)
         for name, pattern in _KEYS.items():
             match = re.search(pattern, line, re.IGNORECASE)
             if match and match[1] and name not in said:
                 said[name] = match[1][:80]
-        if "direction" not in said and (way := _direction_without_key(line)):
-            said["direction"] = way
+        known = direction_of(said.get("direction", ""))
+        if known is None or not known.vertical:
+            way = _upright(line) or ("direction" not in said and _direction(line))
+            said |= {"direction": way} if way else {}
         titled = titled or (None if said else titled_recording(line))
     found = (titled or Recording())._replace(**said)  # type: ignore[arg-type]
-    if below:
-        found = found._replace(station=f"{found.station} borehole".strip())
+    if place:
+        found = found._replace(station=f"{found.station} {place}".strip())
     return found
 
 
-_DIP = re.compile(r"\bdip\b\s*[:=]\s*[+-]?90\b", re.IGNORECASE)
+_DIP = re.compile(
+    r"\bdip\b\s*[:=]?\s*[+-]?90\b|(?<![\d.])[+-]?90(?:\.0*)?\s*(?:deg\w*\s*)?dip\b(?!\s*[:=\d])"
+    r"|\bcmpinc\b\s*[:=]?\s*(?:0|180)(?:\.0*)?\b",
+    re.IGNORECASE,
+)
 _WORD = re.compile(
     r"^\W*(?:dir\.|channel|component|comp\.?|direction|angle|inc\w*)\s+(\S{1,12})\s*$",
     re.IGNORECASE,
 )
+_NAMES = frozenset(
+    (
+        "station",
+        "estacion",
+        "stazione",
+        "istasyon",
+        "event",
+        "earthquake",
+        "deprem",
+        "sismo",
+    )
+)
+"""Words of keys that are followed by a name, whatever it means elsewhere."""
 _BELOW = re.compile(
-    r"bore-?hole|down-?hole|below\s+(?:the\s+)?ground|\bwithin\b.*rock|rock.*\bwithin\b"
-    r"|\b(?:sensor|instrument|installation)?[\s_]*depth\b\s*[:=(m)\s]*-?0*[1-9][\d.]*\s*m\b"
-    r"|\b(?:GL|elevation|level|position)\s*[:=]?\s*-\s*[1-9][\d.]*\s*m?\b"
-    r"|\bpozo\b|\bforage\b|bohrloch|sondaj|скважин",
+    r"bore-?hole|down-?hole|in-?hole|below\s+(?:the\s+)?ground|\bwithin\b.*rock"
+    r"|rock.*\bwithin\b|\b(?:GL|elevation|level|position)\s*[:=]?\s*-\s*[1-9][\d.]*\s*m?\b"
+    r"|\bstation[\s_]*height\b[^\d-]*-\s*[1-9]"
+    r"|\bpozo\b|\bpozzo\b|\bforage\b|bohrloch|sondaj|\bkuyu\w*|скважин|chichu|地中|井下",
     re.IGNORECASE,
 )
-_OF_THE_EARTHQUAKE = re.compile(r"hypo|focal|event|source|epi", re.IGNORECASE)
+_DEPTH = re.compile(
+    r"(?:depth|derinlik\w*|tiefe|profond\w*|profund\w*|глубина|глубина|深さ|深度)\b(?:_m)?"
+    r"\s*(?:[\[(]\s*m\s*[\])]\s*[:=]?\s*-?0*[1-9]|[\s:=]*-?0*[1-9][\d.]*\s*m\b"
+    r"|_m\s*[:=]\s*-?0*[1-9])|_depth_m\s*[:=]\s*-?0*[1-9]"
+    r"|(?:burial|sensor|instrument|installation)[\s_]*depth\s*[:=]\s*-?0*[1-9]"
+)
+"""A depth in metres; that of an earthquake is in km."""
+_STRUCTURE = re.compile(
+    r"[:=]\s*(?:\w+\s+)?(?:basement|roof|(?:\d+(?:st|nd|rd|th)\s+)?floor|storey|story"
+    r"|penthouse|bodrum|cati|kat \d+|keller|dach|techo|sotano|azotea|tetto|toit|крыша|подвал)\b"
+    r"|^\W*(?:roof|basement)\W*$|[:=]\s*floor\s*[:=]?\s*\d|\bfloor\s*[:=]\s*\d"
+    r"|\b\d+(?:st|nd|rd|th)\s+floor\b"
+)
+"""Places in a building."""
+_OF_AN_EARTHQUAKE = re.compile(r"hypo|focal|event|source|epi")
+_OF_THE_EARTHQUAKE = re.compile(
+    r"hypo|ipoc|focal|foco|focus|event|source|epi|earthquake|deprem|sismo|\bkm\b|hodnot"
+    r"|bedrock|rock depth|filter|vs\d|velocity|model|soil|layer"
+)
 
 
-def is_below_ground(line: str) -> bool:
-    """True of a line that puts the instrument below the ground."""
-    return bool(_BELOW.search(line)) and not _OF_THE_EARTHQUAKE.search(line)
+def place_of(line: str) -> str:
+    """Where a line puts the instrument: in a borehole, in a building; else nothing."""
+    plain = folded(line)
+    if _BELOW.search(plain) or _BELOW.search(line):
+        return "" if _OF_AN_EARTHQUAKE.search(plain) else "borehole"
+    if _OF_THE_EARTHQUAKE.search(plain):
+        return ""
+    if _DEPTH.search(plain):
+        return "borehole"
+    return "in a building" if _STRUCTURE.search(plain) else ""
 
 
-def _direction_without_key(line: str) -> str:
-    """The direction in lines such as `Dir. V`, `CHANNEL HNZ` and `dip: -90`."""
+def _upright(line: str) -> str:
+    """The word of a line that says that the component is vertical; else nothing.
+
+    It is the value of any key, or stands at the end of the line.
+    """
     if _DIP.search(line):
         return "UP"
+    for part in re.split(r"[;|\t]", line):
+        key, mark, value = part.rpartition(":") if ":" in part else part.rpartition("=")
+        if speaks_of(key, _NAMES) or not value.strip():
+            continue
+        inside = re.findall(r"[\[(]\s*([^\])]+?)\s*[\])]", value)
+        bare = re.sub(r"[\[(].*?[\])]", " ", value).strip(" .,-")
+        words = [bare, re.split(r"[\s,_]+", bare)[-1], *inside]
+        if found := next(filter(says_up, words), ""):
+            return found
+        of_direction = speaks_of(key, DIRECTIONS) or not (mark or " " in bare)
+        way = direction_of(bare) if of_direction else None
+        if way is not None and way.vertical:
+            return bare
+    return ""
+
+
+def _direction(line: str) -> str:
+    """The direction in lines such as `Dir. V`, `CHANNEL HNZ` and `Richtung: Nord`."""
     match = _WORD.match(line)
-    return match[1] if match and direction_of(match[1]) is not None else ""
+    if match and direction_of(match[1]) is not None:
+        return match[1]
+    key, mark, value = line.partition(":") if ":" in line else line.partition("=")
+    word = re.sub(r"[\[(].*?[\])]", " ", value).strip(" .,;")
+    known = mark and speaks_of(key, DIRECTIONS) and len(word) <= 12
+    return word if known and (direction_of(word) or re.fullmatch(r"\d", word)) else ""
 
 
 _DATE = re.compile(

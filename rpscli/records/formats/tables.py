@@ -75,6 +75,8 @@ def table_of(text: RecordText) -> Table:
     widths = rows.widths
     if len(widths) > 3 and widths[0] == 2 and set(widths[1:]) == {1}:
         _move_count_and_step(text, rows)
+    if len(widths) > 3 and widths[0] > 1 and {*widths} == {widths[0]}:
+        _move_numbers_of_columns(text, rows)
     if len(widths) < 2:
         _refuse_without_rows(text, rows)
 
@@ -166,6 +168,17 @@ def _move_count_and_step(text: RecordText, rows: _Rows) -> None:
         )
     rows.header.append(Statement("count and step", f"npts: {count}, dt: {step}", line))
     del rows.values[:2], rows.widths[0], rows.lines[0]
+
+
+def _move_numbers_of_columns(text: RecordText, rows: _Rows) -> None:
+    """Take a first row 1, 2, 3 above decimal numbers to the header: it has titles."""
+    width = rows.widths[0]
+    above, below = (numerals_in(text.lines[line]) for line in rows.lines[:2])
+    if above != [f"{i + 1}" for i in range(width)] or all(map(str.isdigit, below)):
+        return
+    rows.above = rows.lines[0]
+    rows.header.append(Statement("header", text.lines[rows.above].strip(), rows.above))
+    del rows.values[:width], rows.widths[0], rows.lines[0]
 
 
 def _refuse_without_rows(text: RecordText, rows: _Rows) -> NoReturn:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from rpscli.records.directions import direction_of
 from rpscli.records.quantities import UNIT_PATTERN, canonical_unit
+from rpscli.records.words import folded, words_of
 
 TIME, ACCELERATION, COUNT, UNKNOWN = "time", "acceleration", "count", ""
 """Kinds of column; others are called by their quantity, as `velocity`."""
@@ -23,10 +24,13 @@ _OTHER_UNITS = {
     "an angle": r"deg|rad|°",
     "a frequency": r"hz|1/s|rad/s",
 }
-_TIME_UNITS = r"s|sec|secs|seconds?|ms|msec|msecs|milliseconds?"
+_TIME_UNITS = (
+    r"s|secs?|seconds?|seg|segundos?|sn|saniye|с|сек|秒|sek\w*|secondes?|secondi"
+    r"|ms|msec|msecs|milliseconds?|мс"
+)
 _SPELT = {
     "cm_s2": "cm/s2", "m_s2": "m/s2", "mps2": "m/s2", "cmps2": "cm/s2", "m_s_2": "m/s2",
-    "cm_s_2": "cm/s2", "ms-2": "m/s2", "m s-2": "m/s2", "cm s-2": "cm/s2",
+    "cm_s_2": "cm/s2", "ms-2": "m/s2", "cms2": "cm/s2", "ms2": "m/s2", "cmss": "cm/s2", "m s-2": "m/s2", "cm s-2": "cm/s2",
 }  # fmt: skip
 """Units as names of columns spell them."""
 _ANY = "|".join(
@@ -39,27 +43,39 @@ _BRACKETED = re.compile(r"([^\[(]*?)[\s_]*[\[(]([^\])]*)[\])]")
 _BEHIND = re.compile(rf"(.+?)(?:\s+in\s+|[\s_]+)({_ANY})", re.IGNORECASE)
 _TIME = re.compile(
     r"(?:elapsed[\s_]*)?time(?:[\s_]*(?:from|since)[\s_]*\w+)?|t|seconds?|secs?"
-    r"|zeit|temps|tiempo|tempo"
+    r"|zeit|temps|tiempo|tempo|zaman|sure|время|χρονοσ|jikan|shijian|时间|時間|時刻|czas|cas"
+    r"|tijd|tid|waktu|vrijeme|ido|aika|thoigian|oras|زمان|זמן|시간|saniye"
 )
 _GROUND = re.compile(r"a_?g", re.IGNORECASE)
 _ACCELERATION = re.compile(
-    r"(?:ground[\s_]*|corr\w*[\s_]*|filt\w*[\s_]*)?"
-    r"(?:acc(?:n|el(?:eration)?s?)?|a|a_?g|u''|acceler\w*)(?:[\s_.-]*\w{1,3})?",
-    re.IGNORECASE,
+    r"acc|acn|accn|accels?|acceleration?s?|accelerogram\w*|accelerat\w*|aceler\w*|acceleraz\w*"
+    r"|akseler\w*|beschl\w*|ivme\w*|ускор\w*|加速度|kasokudo|jiasudu|επιταχ\w*|przysp\w*"
+    r"|versnell\w*|zrychl\w*|ubrz\w*|gyorsul\w*|acelerac\w*|acc(?:ns|ew|ud)|a|ag|u|g|가속도"
+    r"|aa?cc[xyz]|a[xyz]|ug|[xu]?g?ddot"
 )
+_BESIDE = re.compile(
+    r"ground|corr\w*|filt\w*|proc\w*|record\w*|horiz\w*|comp\w*|ch|channel|data|values?"
+    r"|series|history|input|base|raw|uncorr\w*|signal|in|of|the|de|del|la|du|sol|suelo|suolo"
+    r"|boden|zemin|yer|terreno|th|deg|dir|direction|az|grunt\w*|грунта"
+)
+_DATA = frozenset(("data", "value", "values", "series", "signal", "record"))
 _SPECTRAL = re.compile(
-    r"\bperiods?\b|freq|spectr|(?:^|\b|_)(?:p?s_?[adve]|psa|psv|t_?n|rsa|se|sae)(?:$|\b|_)",
+    r"\bperiods?\b|freq|spectr|spektr|espectr|спектр|\bfft\b|fourier|谱|スペクトル|(?:^|\b|_)(?:p?s_?[adve]|psa|psv|t_?n|rsa|se|sae)(?:$|\b|_)",
     re.IGNORECASE,
 )
 _OTHERS = {
     "velocity": r"\bvel\w*|\bv\b",
     "displacement": r"\bdispl?\w*|\bdisp\b",
+    "a rotation": r"\brotat|\btilt",
     "Arias intensity": r"arias|\bia\b",
     "a force": r"\bforce\b|\bshear\b",
     "a drift": r"\bdrift",
     "a distance": r"\bdist\w*|\bdepth\b",
 }
-_COUNT = re.compile(r"(?:sample|index|no\.?|n|i|number|#|row|point)s?", re.IGNORECASE)
+_COUNT = re.compile(
+    r"(?:sample|index|indice|indeks|idx|no\.?|nr\.?|n|i|num(?:ber)?|#|row|point|sira|nummer)s?",
+    re.IGNORECASE,
+)
 REMARK = re.compile(r"\w*(?:corr|filt|proc|ground|raw)\w*", re.IGNORECASE)
 """Words in brackets behind a name that are no unit."""
 
@@ -82,13 +98,14 @@ class ColumnTitle(NamedTuple):
             return "a spectrum"
         timed = re.fullmatch(_TIME_UNITS, self.unit, re.IGNORECASE) is not None
         accelerates = canonical_unit(self.unit or "-") is not None
-        if self.name != "T" and _TIME.fullmatch(self.name.lower()):
+        if self.name != "T" and _TIME.fullmatch(folded(self.name)):
             return TIME
         if accelerates:
-            return self._other_by_name or ACCELERATION
+            known = ACCELERATION if self._accelerates or not self.name else UNKNOWN
+            return self._other_by_name or known
         if self.name == "T" or timed:  # a period, or what changes over time
             return ACCELERATION if self.unit == ACROSS else UNKNOWN
-        if _ACCELERATION.fullmatch(self.name):
+        if self._accelerates and not {*words_of(self.name)} <= _DATA:
             return ACCELERATION  # a unit that is none of acceleration is refused by name
         if direction_of(self.name) is not None and (not self.unit or self.remarks):
             return ACCELERATION
@@ -97,7 +114,28 @@ class ColumnTitle(NamedTuple):
     @property
     def remarks(self) -> bool:
         """True if what stands in brackets is a direction or a remark, no unit."""
+        if self.unit in ("V", "v"):  # volts
+            return False
         return bool(REMARK.fullmatch(self.unit)) or direction_of(self.unit) is not None
+
+    @property
+    def _accelerates(self) -> bool:
+        """True if all words of the name are those of a ground acceleration."""
+        if direction_of(self.name) is not None:
+            return self._is_of_acceleration
+        words = re.findall(r"[^\W\d_]+", folded(self.name).replace("u''", "u"))
+        named = [word for word in words if _ACCELERATION.fullmatch(word)]
+        ways = [word for word in words if direction_of(word) is not None]
+        known = (
+            word in named or word in ways or _BESIDE.fullmatch(word) for word in words
+        )
+        plain = re.fullmatch(r"[\w\s.,'\"°:-]*", self.name)
+        return bool(plain and all(known) and (named or ways or {*words} & _DATA))
+
+    @property
+    def _is_of_acceleration(self) -> bool:
+        """True of a direction with a unit of acceleration behind it, or of `a`."""
+        return canonical_unit(self.unit or "-") is not None or self.name.lower() == "a"
 
     @property
     def _other_by_name(self) -> str:

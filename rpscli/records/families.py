@@ -1,0 +1,160 @@
+"""Files whose names differ in one word: components of one recording, as people name them.
+
+Three files of one length, or three columns of a table, are two horizontal components and a
+vertical one. Where neither names nor headers tell which, it is asked for.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path, PurePath
+
+from rpscli.errors import RecordError
+from rpscli.records.directions import (
+    RecordDirection,
+    direction_in,
+    direction_of,
+    directions_of,
+    says_up,
+)
+from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.recordings import channel_titles, clusters, stated
+from rpscli.records.source import FILE, Source
+
+_WORD = re.compile(r"[^\W_]+")
+_TAIL = re.compile(r"(.*?)([^\W\d_]+|\d+)")
+_MANY = 3
+
+
+def forms_of(name: str) -> dict[str, str]:
+    """Each word of a name, or the end of a word, by the name with a blank in its place."""
+    found = {}
+    for match in _WORD.finditer(name):
+        start, end = match.span()
+        tail = _TAIL.fullmatch(match[0])
+        behind = len(tail[1]) if tail else 0
+        for at in {start, start + behind, end - 1}:
+            found[f"{name[:at]} {name[end:]}"] = name[at:end]
+    return found
+
+
+def of_one_name(one: str, other: str) -> bool:
+    """True if two names of files differ in one word at most."""
+    return bool(forms_of(one).keys() & forms_of(other).keys())
+
+
+_AZIMUTH_TAIL = re.compile(r".*[^\W_][-_]?(\d{3})")
+_SIGN = re.compile(r".*[-_. ]([NEVZ])")
+
+
+def direction_by_name(name: str) -> str:
+    """The word of a direction at the end of the name of a file; empty without one.
+
+    >>> direction_by_name("STA_HLZ.csv"), direction_by_name("MUL279.AT2")
+    ('HLZ', '279')
+    >>> direction_by_name("run_001.txt"), direction_by_name("model_d.txt")
+    ('', '')
+    """
+    stem = PurePath(name).stem
+    ending = PurePath(name).suffix[1:].rstrip("0123456789")
+    if len(ending) == 2 and direction_of(ending) is not None:
+        return ending
+    last = re.split(r"[-_. ]", stem)[-1]
+    if len(last) > 1 and not last.isdigit() and _is_clear(last):
+        return last
+    if (match := _AZIMUTH_TAIL.fullmatch(stem)) and 9 < int(match[1]) <= 360:
+        return match[1]
+    if stem.endswith(("000", "00")) and (match := _AZIMUTH_TAIL.fullmatch(stem)):
+        return match[1] if match[1] == "000" else ""
+    match = _SIGN.fullmatch(stem)
+    return match[1] if match else ""
+
+
+def _is_clear(word: str) -> bool:
+    """True of a word that can hardly be anything but a direction."""
+    if says_up(word):
+        return True
+    way = direction_of(word)
+    return way is not None and (way.azimuth is not None or len(word) > 2)
+
+
+def require_two(motions: Mapping[Source, GroundMotion], folder: Path | None) -> None:
+    """Refuse three motions of one length and step and one name, or recording, of which
+    not all are told to be horizontal.
+    """
+    real = {
+        of: motion
+        for of, motion in motions.items()
+        if of.scheme == FILE and "channel" not in of.values
+        and "not a recording" not in motion.description.lower()
+    }  # fmt: skip
+    for three, words in _threes(real, folder):
+        told = [motions[of].recording for of in three]
+        if len({each.station for each in told if each.station}) > 1:
+            continue
+        if len({each.event or each.origin for each in told}) > 1:
+            continue
+        if not _all_horizontal(words, [stated(of, folder).direction for of in three]):
+            names = ", ".join(PurePath(of.place).name for of in three)
+            raise RecordError(
+                f"{names}: are of one length and differ in a word of their names; which of"
+                " the third component beside the two horizontal ones is vertical, neither"
+                " names nor headers tell. Call it ...-UP, or name the records that are meant"
+                " one by one"
+            )
+
+
+def _threes(
+    motions: Mapping[Source, GroundMotion], folder: Path | None
+) -> Iterable[tuple[list[Source], list[str]]]:
+    """Three sources of one length and step and one name or recording, with their words."""
+    groups: dict[tuple[object, ...], list[tuple[Source, str]]] = {}
+    number = dict(zip(motions, clusters([*motions], folder), strict=True))
+    for of, motion in motions.items():
+        size = (motion.npts, round(motion.dt, 7), str(PurePath(of.place).parent))
+        name = PurePath(of.place).name
+        for key, word in forms_of(name).items():
+            groups.setdefault((*size, key), []).append((of, word))
+        word = direction_by_name(name)
+        groups.setdefault((*size, number[of]), []).append((of, word))
+    for members in groups.values():
+        if len(members) == _MANY:
+            yield [of for of, _ in members], [word for _, word in members]
+
+
+def _all_horizontal(words: Sequence[str], stated_ones: Sequence[str]) -> bool:
+    """True if all of several components are told to be horizontal, and none along another."""
+    ways = directions_of(words)
+    by_header = directions_of(stated_ones)
+    known = [b if b is not None else a for a, b in zip(ways, by_header, strict=True)]
+    if any(way is None or way.vertical for way in known):
+        return False
+    return not _along_another(known)
+
+
+def _along_another(ways: Iterable[RecordDirection | None]) -> bool:
+    azimuths = [
+        way.azimuth % 180.0 for way in ways if way is not None and way.azimuth is not None
+    ]
+    return len({*azimuths}) < len(azimuths)
+
+
+def require_horizontal_titles(sources: Iterable[Source], folder: Path | None) -> None:
+    """Refuse a table of three accelerations and more whose titles do not tell directions."""
+    for place in dict.fromkeys(of.place for of in sources if "channel" in of.values):
+        own = [of for of in sources if of.place == place]
+        titles = channel_titles(own[0], folder)
+        if len(own) < _MANY or len(titles) != len(own):
+            continue
+        ways = [direction_in(title) for title in titles]
+        together = directions_of(titles)
+        known = [b if b is not None else a for a, b in zip(ways, together, strict=True)]
+        unknown = [t for t, way in zip(titles, known, strict=True) if way is None]
+        upright = any(way is not None and way.vertical for way in known)
+        if unknown and not (upright and len(own) == _MANY):
+            raise RecordError(
+                f"{place}: has {len(own)} columns of acceleration, and the titles"
+                f" {', '.join(unknown[:3])} do not tell their directions; name the horizontal"
+                f" ones: ?channel={own[0].values['channel']}, or two by ?channel=1,2&both"
+            )
