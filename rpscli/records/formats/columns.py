@@ -16,7 +16,7 @@ from typing import NamedTuple, NoReturn
 
 import numpy as np
 
-from rpscli.errors import RecordError
+from rpscli.errors import RecordError, foreign_letters
 from rpscli.records.directions import direction_in
 from rpscli.records.formats.header_lines import Facts, HeaderLines, doubts_of_header
 from rpscli.records.formats.record_text import (
@@ -271,6 +271,11 @@ def _titles_given(text: RecordText, columns: str, width: int) -> list[ColumnTitl
 
 def _columns(text: RecordText, table: Table, titles: list[ColumnTitle]) -> GroundMotion:
     """One of several columns, with the times of another."""
+    if table.announced not in (None, table.widths.size):
+        raise text.fault(
+            f"the header announces {table.announced} values and the file holds"
+            f" {table.widths.size} rows; fetch it again, or correct the header"
+        )
     width = int(table.widths[0])
     values = table.values.reshape(-1, width)
     series = _accelerations(titles)
@@ -542,6 +547,7 @@ def _refuse_titles(
     """Say what was understood of titles, what not, and what to write."""
     said = [
         f"{title.name[:30] or title.unit!r} is {kind or 'not understood'}"
+        + ("" if kind else foreign_letters(title.name))
         for title, kind in zip(titles, kinds, strict=True)
     ]
     units = [title.unit for title in titles if canonical_unit(title.unit or "-")]

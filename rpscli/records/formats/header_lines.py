@@ -56,6 +56,11 @@ _AT_THE_END = re.compile(
     rf"\W*([^\W\d_][^:=;|]*?)\s+({_NUMBER})(?![\d.,:]){_BEHIND}\s*[.)\]]*", re.IGNORECASE
 )
 _ALONE = re.compile(rf"\s*[x×*]?\s*({_NUMBER})()\s*", re.IGNORECASE)
+_IN_CELLS = re.compile(
+    rf"^([^\W\d][^,;:=]*)[,;\t]\s*({_NUMBER}(?:\s*{_UNIT})?|{_UNIT})\s*[,;]*$",
+    re.IGNORECASE,
+)
+"""A key and its value in two cells."""
 _PART = re.compile(r"[;|\t]|,(?=\s*[^\W\d][^:=,]*[:=])|\s{2,}(?=[^\W\d][^:=]*[:=])")
 _TIMES = re.compile(
     r"\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}(?:T(?=\d))?|\d{1,2}:\d{2}(?!\d)(?::\d{2}(?:\.\d*)?)?Z?"
@@ -143,6 +148,7 @@ class HeaderLines:
         """Parts of the lines, with neither dates, clock times nor options of sources."""
         for index, line in self.lines:
             bare = _OF_A_SOURCE.sub(" ", line)
+            bare = _IN_CELLS.sub(r"\1: \2", bare)
             for part in _PART.split(_TIMES.sub(" ", bare)):
                 if part.strip():
                     yield index, part.strip()

@@ -15,13 +15,14 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.errors import RecordError, stem_of
+from rpscli.errors import RecordError, foreign_letters, stem_of
 from rpscli.records.formats.statements import Statement, unit_behind, whole_number
 from rpscli.records.ground_motion import UNKNOWN, GroundMotion, Recording
 from rpscli.records.quantities import (
     ACCELERATIONS,
     KNOWN_UNITS,
     NUMBER_PATTERN,
+    UNIT_PATTERN,
     canonical_unit,
     last_digit,
     numbers_in,
@@ -102,6 +103,26 @@ class Stated:
     duration: Statement | None = None
     peak: Statement | None = None
     recording: Recording = UNKNOWN
+
+
+STEP_REMEDY = (
+    "or say the step, or what the columns are: ?columns=time,acceleration [UNIT]"
+)
+_MULTIPLE_OF_UNIT = re.compile(
+    rf"(?<![\w.])({NUMBER_PATTERN})\s*\*?\s*({UNIT_PATTERN})", re.IGNORECASE
+)
+
+
+def _look_alikes(text: str) -> str:
+    """Characters of a unit that only look like those of a known one, by their names."""
+    return "" if text.isascii() else foreign_letters(text)
+
+
+def _multiple_in(text: str) -> str:
+    """The multiple of a known unit that a text names, else an example of one."""
+    match = _MULTIPLE_OF_UNIT.search(text)
+    unit = canonical_unit(match[2]) if match else None
+    return f"{match[1]} {unit}" if match and unit else "0.001 g, for example"
 
 
 @dataclass(frozen=True)
@@ -305,9 +326,10 @@ class RecordText:
         """
         factor = TIME_UNITS.get(unit.strip(" .").lower())
         if factor is None and (is_unit or unit.strip(" .").lower() not in _JOINING):
+            columns = "what the columns are: ?columns=time,acceleration [UNIT]"
             raise self.fault(
-                f"a time in {unit[:_SHOWN]!r} is not known; write s, or ms, or say the"
-                " step: ?dt=0.005",
+                f"a time in {unit[:_SHOWN]!r}{foreign_letters(unit)} is not known; write s,"
+                f" or ms, or say {columns if is_unit else 'the step: ?dt=0.005'}",
                 line,
             )
         return factor or 1.0
@@ -338,9 +360,10 @@ class RecordText:
         def meaning(each: Statement) -> str:
             if (unit := canonical_unit(each.value)) is None:
                 raise self.fault(
-                    f"{each.name} says {each.value.strip()[:_SHOWN]!r}, which is not a"
-                    f" unit of acceleration that is known ({KNOWN_UNITS}); give the"
-                    " acceleration file, or say what a value is: ?units=1 g",
+                    f"{each.name} says {each.value.strip()[:_SHOWN]!r}"
+                    f"{_look_alikes(each.value)}, which is not a unit of acceleration that"
+                    f" is known ({KNOWN_UNITS}); give the acceleration file, or say what a"
+                    f" value is: ?units={_multiple_in(each.value)}",
                     each.line,
                 )
             return unit
@@ -446,6 +469,12 @@ _FOREIGN = {
         "a web page, perhaps the log-in page of the database; download the record itself"
     ),
 }
+_TYPESET = {
+    0x2212: "-",
+    0xA0: " ",
+    **dict.fromkeys((0x200B, 0x200C, 0x200D, 0x2060, 0xFEFF)),
+}
+"""Minus signs, and blanks that do not part or do not show, as word processors set them."""
 _PADDING = re.compile(rb"\0{2,}|\0\Z")  # of old systems, to the ends of their blocks
 
 
@@ -493,7 +522,7 @@ def read_text(path: Path, of: Source) -> RecordText:
             UnicodeDecodeError
         ):  # station names of older files; all bytes are Latin-1 letters
             text = data.decode("latin-1")
-    text = re.sub(r"\r+\n?", "\n", text).rstrip("\x1a\n")
+    text = re.sub(r"\r+\n?", "\n", text).rstrip("\x1a\n").translate(_TYPESET)
     if not text.strip():
         raise RecordError(
             f"{path}: the file is empty; fetch it again, or export the record as text"

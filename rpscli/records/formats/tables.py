@@ -41,13 +41,25 @@ class Table(NamedTuple):
         return self.header[0].value[:100] if self.header else "no header"
 
 
+_QUOTED_COMMA = re.compile(r'"\s*([+-]?\d*),(\d+(?:[eE][+-]?\d+)?)\s*"')
+_CLOCK = re.compile(
+    r"^\s*\"?(?:\d{4}[-/]\d{1,2}[-/]\d{1,2}[ T])?(\d{1,2}):(\d{2}):(\d{2})([.,]\d+)?Z?\"?"
+    r"(?=[\s,;]+[-+.\d])"
+)
+
+
 def plain_line(line: str) -> str:
     """A line of numbers without quotes, between blanks where ; or tabs part them.
 
-    Commas are decimal ones then.
+    Commas are decimal ones then, and in quotes; a clock time before other numbers is one
+    of seconds.
     """
+    if ":" in line and (match := _CLOCK.match(line)):
+        hour, minute, second = map(int, match.groups()[:3])
+        part = (match[4] or "").replace(",", ".")
+        line = f"{3600 * hour + 60 * minute + second}{part}{line[match.end() :]}"
     if '"' in line:
-        line = line.replace('"', " ")
+        line = _QUOTED_COMMA.sub(r"\1.\2", line).replace('"', " ")
     if (";" in line or "\t" in line) and not re.search("[A-Za-z]{2}", line):
         return re.sub(r"(?<=\d),(?=\d)", ".", line).replace(";", " ").replace("\t", " ")
     return line
@@ -73,7 +85,8 @@ def table_of(text: RecordText) -> Table:
     """The rows of numbers of a text, held against what its header announces."""
     rows = _rows(text)
     widths = rows.widths
-    if len(widths) > 3 and widths[0] == 2 and set(widths[1:]) == {1}:
+    following = {*widths[1:-1]}
+    if len(widths) > 3 and widths[0] == 2 and len(following) == 1 and following != {2}:
         _move_count_and_step(text, rows)
     if len(widths) > 3 and widths[0] > 1 and {*widths} == {widths[0]}:
         _move_numbers_of_columns(text, rows)
@@ -157,11 +170,12 @@ def blank_within(text: RecordText, table: Table) -> list[str]:
 def _move_count_and_step(text: RecordText, rows: _Rows) -> None:
     """Take a first row, of the count of values and their step, to the header."""
     line = rows.lines[0]
-    count, step = numerals_in(text.lines[line])
-    following = len(rows.widths) - 1
+    one, other = numerals_in(text.lines[line])
+    count, step = (one, other) if one.isdigit() else (other, one)
+    following = len(rows.values) - 2
     if not (count.isdigit() and int(count) == following):
         raise text.fault(
-            f"{count} and {step} look like the number of values and their step, but"
+            f"{one} and {other} look like the number of values and their step, but"
             f" {following} values follow; correct them, or begin their line"
             " with #",
             line,

@@ -30,7 +30,8 @@ _TIME_UNITS = (
 )
 _SPELT = {
     "cm_s2": "cm/s2", "m_s2": "m/s2", "mps2": "m/s2", "cmps2": "cm/s2", "m_s_2": "m/s2",
-    "cm_s_2": "cm/s2", "ms-2": "m/s2", "cms2": "cm/s2", "ms2": "m/s2", "cmss": "cm/s2", "m s-2": "m/s2", "cm s-2": "cm/s2",
+    "cm_s_2": "cm/s2", "ms-2": "m/s2",
+    "cms2": "cm/s2", "ms2": "m/s2", "m s-2": "m/s2", "cm s-2": "cm/s2",
 }  # fmt: skip
 """Units as names of columns spell them."""
 _ANY = "|".join(
@@ -43,7 +44,7 @@ _BRACKETED = re.compile(r"([^\[(]*?)[\s_]*[\[(]([^\])]*)[\])]")
 _BEHIND = re.compile(rf"(.+?)(?:\s+in\s+|[\s_]+)({_ANY})", re.IGNORECASE)
 _TIME = re.compile(
     r"(?:elapsed[\s_]*)?time(?:[\s_]*(?:from|since)[\s_]*\w+)?|t|seconds?|secs?"
-    r"|zeit|temps|tiempo|tempo|zaman|sure|время|χρονοσ|jikan|shijian|时间|時間|時刻|czas|cas"
+    r"|zeit|datetime|temps|tiempo|tempo|zaman|sure|время|χρονοσ|jikan|shijian|时间|時間|時刻|czas|cas"
     r"|tijd|tid|waktu|vrijeme|ido|aika|thoigian|oras|زمان|זמן|시간|saniye"
 )
 _GROUND = re.compile(r"a_?g", re.IGNORECASE)
@@ -79,6 +80,11 @@ _COUNT = re.compile(
 REMARK = re.compile(r"\w*(?:corr|filt|proc|ground|raw)\w*", re.IGNORECASE)
 """Words in brackets behind a name that are no unit."""
 
+
+CLOCK = re.compile(
+    r"\s*[(\[]\s*(?:h+:m+(?::s+[.,\w]*)?|jst|utc|gmt|local|lt)\s*[)\]]", re.IGNORECASE
+)
+"""What stands behind the title of a column of clock times, in brackets."""
 
 ACROSS = "trans"
 """In place of a unit: T beside L and V is the transverse direction, not a period."""
@@ -161,6 +167,7 @@ def title_of(cell: str, line: int) -> ColumnTitle:
     """A title from its cell: a unit in brackets, behind `in`, a blank or `_`."""
     text = cell.strip()
     text = re.sub(r"\s*[(\[][+-][)\]]", "", text)  # N(+): the positive direction
+    text = CLOCK.sub("", text)
     if match := _BRACKETED.fullmatch(text):
         return ColumnTitle(match[1].strip(), _unit(match[2]), line)
     if not _GROUND.fullmatch(text) and (match := _BEHIND.fullmatch(text)):
