@@ -24,10 +24,13 @@ UP = RecordDirection(vertical=True)
 HORIZONTAL = RecordDirection(vertical=False)
 
 _VERTICAL_WORDS = re.compile(
-    r"up|ud|updn|updo|updown|upward\w*|dwn|down|downward\w*|vrt|vrtcl|vert|verti[ck]\w*|vtcl"
-    r"|vertic\w*|haut|hoch|senkrecht|lotrecht|arriba|alto|dusey|dikey|dus|верт\w*|отвесн\w*"
+    r"up|ud|updn|updo|updown|upward\w*|dwn|down|downward\w*|vrt|vrtcl|vert"
+    r"|verti[ck]\w*|vtcl"
+    r"|vertic\w*|haut|hoch|senkrecht|lotrecht|arriba|alto|dusey|dikey|dus|верт\w*"
+    r"|отвесн\w*"
     r"|上下|垂直|竖直|竖向|鉛直|铅直|수직|上|joge|jouge|enchoku|chui?zhi|shuxiang|shangxia"
-    r"|katak\w*|κατακ\w*|pionow\w*|svisl\w*|vertikaln\w*|okomit\w*|verdikal|lodret|fugg\w*"
+    r"|katak\w*|κατακ\w*|pionow\w*|svisl\w*|vertikaln\w*|okomit\w*|verdikal|lodret"
+    r"|fugg\w*"
     r"|thangdung|qaim|tegak|عمودي|אנכי|nadir|zenith"
 )
 """Words for up and down, of two letters and more, that say nothing else."""
@@ -35,32 +38,24 @@ _VERTICAL_SIGNS = re.compile(
     r"v|z|u|d|du|dn|ve|vt|hz|v\d|cz|sx|(?:gm|ch|comp|acc?|a)\d*z|(?:acc?|a|comp)\d*v"
     r"|[hbelsc][nhlgp]z\d*"
 )
+
+
+def _at(azimuth: float, words: str) -> dict[str, float]:
+    return dict.fromkeys(words.split(), azimuth)
+
+
 _COMPASS = {
-    "n": 0.0, "e": 90.0, "s": 180.0, "w": 270.0,
-    **dict.fromkeys(
-        ("north", "nord", "norte", "kuzey", "север", "с", "βορρας", "kita", "bei", "北"), 0.0
-    ),
-    **dict.fromkeys(
-        ("east", "ost", "este", "est", "dogu", "восток", "в", "oost", "higashi", "dong", "東",
-         "东"), 90.0
-    ),
-    **dict.fromkeys(
-        ("south", "sud", "sued", "sur", "guney", "юг", "ю", "zuid", "minami", "nan", "南"), 180.0
-    ),
-    **dict.fromkeys(
-        ("west", "ouest", "oeste", "ovest", "bati", "запад", "з", "nishi", "xi", "西"), 270.0
-    ),
-}  # fmt: skip
+    **_at(0.0, "n north nord norte kuzey север с βορρασ kita bei 北"),
+    **_at(90.0, "e east ost este est dogu восток в oost higashi dong 東 东"),
+    **_at(180.0, "s south sud sued sur guney юг ю zuid minami nan 南"),
+    **_at(270.0, "w west ouest oeste ovest bati запад з nishi xi 西"),
+}
 _AXES = {
-    **dict.fromkeys(
-        ("ns", "sn", "nsc", "сю", "юс", "kg", "gk", "northsouth", "nanboku", "nambok", "beinan",
-         "nanbei", "南北", "北南", "nordsud", "nortesur", "kuzeyguney", "севюг", "сев"), 0.0
-    ),
-    **dict.fromkeys(
-        ("ew", "we", "ewc", "вз", "зв", "db", "bd", "eastwest", "tozai", "touzai", "dongxi",
-         "xidong", "東西", "东西", "ostwest", "esteoeste", "dogubati", "вост", "oe", "eo"), 90.0
-    ),
-}  # fmt: skip
+    **_at(0.0, "ns sn nsc сю юс kg gk northsouth nanboku nambok beinan nanbei 南北 北南"),
+    **_at(0.0, "nordsud nortesur kuzeyguney севюг сев"),
+    **_at(90.0, "ew we ewc вз зв db bd eastwest tozai touzai dongxi xidong 東西 东西"),
+    **_at(90.0, "ostwest esteoeste dogubati вост oe eo"),
+}
 """Words of both ends of an axis, at the azimuth of one of them."""
 _BEARING = re.compile(r"([ns])(\d{1,2})([ew])")
 _NAMED = re.compile(

@@ -1,7 +1,7 @@
 """Files whose names differ in one word: components of one recording, as people name them.
 
-Three files of one length, or three columns of a table, are two horizontal components and a
-vertical one. Where neither names nor headers tell which, it is asked for.
+Three files of one length, or three columns of a table, are two horizontal components and
+a vertical one. Where neither names nor headers tell which, it is asked for.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _MANY = 3
 
 
 def forms_of(name: str) -> dict[str, str]:
-    """Each word of a name, or the end of a word, by the name with a blank in its place."""
+    """Words of a name, or ends of words, by the name with a blank in their place."""
     found = {}
     for match in _WORD.finditer(name):
         start, end = match.span()
@@ -76,7 +76,8 @@ def _is_clear(word: str) -> bool:
     if says_up(word):
         return True
     way = direction_of(word)
-    return way is not None and (way.azimuth is not None or len(word) > 2)
+    whole = way is not None and (way.azimuth is not None or len(word) > 2)
+    return whole and (word.isupper() or not word[-1].isdigit())
 
 
 def require_two(motions: Mapping[Source, GroundMotion], folder: Path | None) -> None:
@@ -98,9 +99,11 @@ def require_two(motions: Mapping[Source, GroundMotion], folder: Path | None) -> 
         if not _all_horizontal(words, [stated(of, folder).direction for of in three]):
             names = ", ".join(PurePath(of.place).name for of in three)
             raise RecordError(
-                f"{names}: are of one length and differ in a word of their names; which of"
+                f"{names}: are of one length and differ in a word of their names;"
+                f" which of"
                 " the third component beside the two horizontal ones is vertical, neither"
-                " names nor headers tell. Call it ...-UP, or name the records that are meant"
+                " names nor headers tell. Call it ...-UP, or name the records that are"
+                " meant"
                 " one by one"
             )
 
@@ -108,7 +111,7 @@ def require_two(motions: Mapping[Source, GroundMotion], folder: Path | None) -> 
 def _threes(
     motions: Mapping[Source, GroundMotion], folder: Path | None
 ) -> Iterable[tuple[list[Source], list[str]]]:
-    """Three sources of one length and step and one name or recording, with their words."""
+    """Three sources of one length and step, of one name or recording, with words."""
     groups: dict[tuple[object, ...], list[tuple[Source, str]]] = {}
     number = dict(zip(motions, clusters([*motions], folder), strict=True))
     for of, motion in motions.items():
@@ -124,7 +127,7 @@ def _threes(
 
 
 def _all_horizontal(words: Sequence[str], stated_ones: Sequence[str]) -> bool:
-    """True if all of several components are told to be horizontal, and none along another."""
+    """True if all of several components are told to be horizontal, none along another."""
     ways = directions_of(words)
     by_header = directions_of(stated_ones)
     known = [b if b is not None else a for a, b in zip(ways, by_header, strict=True)]
@@ -141,7 +144,7 @@ def _along_another(ways: Iterable[RecordDirection | None]) -> bool:
 
 
 def require_horizontal_titles(sources: Iterable[Source], folder: Path | None) -> None:
-    """Refuse a table of three accelerations and more whose titles do not tell directions."""
+    """Refuse a table of three accelerations whose titles do not tell directions."""
     for place in dict.fromkeys(of.place for of in sources if "channel" in of.values):
         own = [of for of in sources if of.place == place]
         titles = channel_titles(own[0], folder)
@@ -155,6 +158,7 @@ def require_horizontal_titles(sources: Iterable[Source], folder: Path | None) ->
         if unknown and not (upright and len(own) == _MANY):
             raise RecordError(
                 f"{place}: has {len(own)} columns of acceleration, and the titles"
-                f" {', '.join(unknown[:3])} do not tell their directions; name the horizontal"
+                f" {', '.join(unknown[:3])} do not tell their directions; name the"
+                f" horizontal"
                 f" ones: ?channel={own[0].values['channel']}, or two by ?channel=1,2&both"
             )

@@ -52,7 +52,7 @@ from rpscli.records.recordings import (
     vertical_of,
     verticals,
 )
-from rpscli.records.repeats import repeats_among
+from rpscli.records.repeats import likenesses_among, repeats_among
 from rpscli.records.source import (
     FILE,
     LIKENESS,
@@ -344,6 +344,16 @@ def _once(
         ]
         if names:
             notes.append(f"{of}: {told}: {_some(names)}")
+    alike = [
+        f"{PurePath(each.place).name} (of {PurePath(other.place).name})"
+        for each, other in likenesses_among(motions)
+        if each not in repeats and other not in repeats
+    ]
+    if alike:
+        notes.append(
+            f"{of}: the same samples times a factor, cut, or with samples left out, all"
+            f" taken: {_some(alike)}"
+        )
     again = {each for each, (_, one) in repeats.items() if one}
     kept = [each for each in single if each not in again]
     require_two({each: motions[each] for each in kept if each in motions}, folder)
@@ -351,8 +361,10 @@ def _once(
 
 
 _BELOW_BY_NAME = re.compile(
-    r"bore-?hole|down-?hole|(?<![A-Za-z])(?:GL-?[1-9]|bottom|DH\d*|BH\d+|bedrock|pozz?o|forage"
-    r"|bohrloch|sondaj|kuyu|roof|basement|\d+(?:st|nd|rd|th)?[_ -]?floor|cati|bodrum)(?![A-Za-z])"
+    r"bore-?hole|down-?hole|(?<![A-Za-z])(?:GL-?[1-9]|bottom|DH\d*|BH\d+|bedrock"
+    r"|pozz?o|forage"
+    r"|bohrloch|sondaj|kuyu|roof|basement|\d+(?:st|nd|rd|th)?[_ -]?floor|cati"
+    r"|bodrum)(?![A-Za-z])"
     r"|(?<=[_ .-])-?\d+m(?![A-Za-z])|скважин|крыша",
     re.IGNORECASE,
 )

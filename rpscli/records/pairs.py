@@ -66,7 +66,7 @@ def beside_each_other(
 
 
 def _words_of_directions(first: GroundMotion, second: GroundMotion) -> tuple[str, str]:
-    """The words of two names of files that tell directions; empty where they tell none."""
+    """The words of two names of files that tell directions; empty without such."""
     places = [of.place for of in (first.source, second.source) if isinstance(of, Source)]
     if len(places) < 2 or places[0] == places[1]:
         return "", ""
@@ -104,7 +104,8 @@ def _name_doubts(first: GroundMotion, second: GroundMotion) -> Iterator[str]:
         return
     if all(map(direction_by_name, names)):
         yield (
-            f"{names[0]} and {names[1]} differ in more than a direction: see that both are"
+            f"{names[0]} and {names[1]} differ in more than a direction: see that both"
+            f" are"
             " components of one recording"
         )
 
@@ -122,8 +123,8 @@ USUAL_ANGLE = 60.0
 
 def _angle_doubts(one: str, other: str, source: str) -> Iterator[str]:
     """A doubt about the angle between two directions; refuse those along one line."""
-    known = directions_of((one, other))
-    ways = known[0] or direction_in(one), known[1] or direction_in(other)
+    first, second = directions_of((one, other))
+    ways = first or direction_in(one), second or direction_in(other)
     known = [way.azimuth for way in ways if way is not None and way.azimuth is not None]
     if len(known) < 2:
         return
@@ -131,7 +132,8 @@ def _angle_doubts(one: str, other: str, source: str) -> Iterator[str]:
     angle = min(turned, 180.0 - turned)
     if angle < LEAST_ANGLE:
         raise RecordError(
-            f"{source}: components along {one} and {other} are {angle:g} degrees apart, and"
+            f"{source}: components along {one} and {other} are {angle:g} degrees"
+            f" apart, and"
             " a pair is taken for right angles; name two of different directions"
         )
     if angle < USUAL_ANGLE:

@@ -38,7 +38,8 @@ from rpscli.records.directions import directions_of
 from rpscli.records.ground_motion import UNKNOWN, Recording
 from rpscli.records.measures import Of
 from rpscli.records.source import FILE, SET, Source
-from rpscli.records.when import seconds_of
+from rpscli.records.when import days_of, seconds_of
+from rpscli.records.words import COUNTRIES, NO_NAMES, words_of
 
 if TYPE_CHECKING:
     from rpscli.records.formats.record_text import Channel
@@ -56,7 +57,8 @@ _COMPONENT = re.compile(
 """Parts of a name that tell components of a recording apart."""
 
 _VERTICAL = re.compile(
-    r"(.*?)(?:[-_.]?(?:UP|UD|DWN|VERT?)|[-_][VZ]|(?<=[A-Z])V(?=\.at2)|(?<=\.[A-Z]{2})Z)[12]?(?:\.\w+)*",
+    r"(.*?)(?:[-_.]?(?:UP|UD|DWN|VERT?)|[-_][VZ]|(?<=[A-Z])V(?=\.at2)"
+    r"|(?<=\.[A-Z]{2})Z)[12]?(?:\.\w+)*",
     re.IGNORECASE,
 )
 """The name of a vertical component: what it shares with others of its
@@ -133,6 +135,31 @@ def _event_names(recording: Recording) -> set[str]:
         names.add(f"event at {recording.origin}")
     elif named:
         names.add(f"event {named}")
+    return names | _by_words(recording)
+
+
+_NUMBERED = re.compile(r"\s*(EQID|RSN)\W*(\d+)\s*", re.IGNORECASE)
+
+
+def _by_words(recording: Recording) -> set[str]:
+    """Names by the words of an event: all of them with its year, each with its date.
+
+    Spellings differ in accents, hyphens, the country and the order of day and month.
+    """
+    event = recording.event
+    if match := _NUMBERED.fullmatch(event):
+        return {f"event {match[1].upper()} {match[2]}"}
+    places = [word for word in words_of(event) if word not in NO_NAMES]
+    own = [word for word in places if word not in COUNTRIES] or places
+    if not own:
+        return set()
+    letters = "".join(own)
+    year = _YEAR.search(event)
+    number = (year[1] or _whole_year(year[2])) if year else ""
+    names = {f"event by letters {letters} {number}"}
+    days = days_of(event) | days_of(recording.origin)
+    for word in (*own, letters):
+        names |= {f"event of {day} {word}" for day in days if len(word) > 3}
     return names
 
 
@@ -154,8 +181,10 @@ def _whole_year(two: str) -> str:
 
 
 _COUNTRY = re.compile(
-    r"(?<=\w)[\s,]+(?:turkey|taiwan|japan|italy|iran|chile|mexico|greece|new zealand|nepal"
-    r"|usa|california|calif|ca|nevada|alaska|armenia|china|peru|india|romania|earthquake)$"
+    r"(?<=\w)[\s,]+(?:turkey|taiwan|japan|italy|iran|chile|mexico|greece|new zealand"
+    r"|nepal"
+    r"|usa|california|calif|ca|nevada|alaska|armenia|china|peru|india|romania"
+    r"|earthquake)$"
 )
 """What names of earthquakes end with in one catalogue and not in another."""
 
@@ -343,7 +372,8 @@ def _require_told(place: str, level: Sequence[str], folder: Path | None) -> None
         return
     beside = " and ".join(PurePath(each).name for each in level)
     raise RecordError(
-        f"{place}: is a third component beside {beside}, and neither its name nor its header"
+        f"{place}: is a third component beside {beside}, and neither its name nor its"
+        f" header"
         " says that it is vertical; call it ...-UP, or name the records that are meant"
     )
 

@@ -72,3 +72,43 @@ def _one_component(
     by_ending = any(direction_of(name.suffix.strip(".0123456789")) for name in names)
     channels = [each.values.get("channel") for each in (one, other)]
     return names[0].stem == names[1].stem and channels[0] == channels[1] and not by_ending
+
+
+def likenesses_among(
+    motions: Mapping[Source, GroundMotion],
+) -> list[tuple[Source, Source]]:
+    """Motions that are another one times a factor, cut, or with samples left out."""
+    found = []
+    taken: list[tuple[Source, GroundMotion]] = []
+    for of, motion in motions.items():
+        for other, one in taken:
+            if _is_alike(*sorted((motion, one), key=lambda each: each.npts)):
+                found.append((of, other))
+                break
+        else:
+            taken.append((of, motion))
+    return found
+
+
+def _is_alike(short: GroundMotion, long: GroundMotion) -> bool:
+    """True if the shorter motion is a part of the longer one, times a factor."""
+    ratio = short.dt / long.dt
+    every = round(ratio)
+    if every < 1 or abs(ratio - every) > 1e-6 * ratio or short.npts < _FEWEST:
+        return False
+    part = long.acceleration[::every][: short.npts]
+    own = short.acceleration[: part.size]
+    if part.size < _FEWEST or part.size < _PART * short.npts:
+        return False
+    place = int(np.argmax(np.abs(own)))
+    if part[place] == 0.0 or own[place] == 0.0:
+        return False
+    factor = own[place] / part[place]
+    is_same = short.npts == long.npts and every == 1 and abs(factor - 1.0) < _ALIKE
+    off = float(np.max(np.abs(own - factor * part)))
+    return not is_same and off <= _ALIKE * abs(own[place])
+
+
+_FEWEST = 32
+"""Samples that agree by more than chance."""
+_PART = 0.9

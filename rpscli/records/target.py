@@ -29,6 +29,7 @@ from rpscli.errors import (
 from rpscli.records.measures import Of
 from rpscli.records.quantities import ACCELERATIONS, KNOWN_UNITS, canonical_unit
 from rpscli.records.source import Query, hint, parse_query
+from rpscli.records.words import folded, look_alikes
 from rpscli.registry import Registry, owner_of
 from rpscli.titled_table import Row, TitledTable, number_of, text_of, titled_table
 
@@ -456,19 +457,35 @@ def _read_ordinates(path: Path, source: str) -> _Ordinates:
     return _Ordinates(cells, factor, bool(scatters), pga, note)
 
 
-_DEVIATION = re.compile(r"(?:sigma|beta|std|dispersion)(?:_?ln)?(?:_?sa)?", re.IGNORECASE)
-"""Names of the standard deviation of ln Sa, a plain number."""
+_DEVIATION = re.compile(
+    r"(?:sigma|beta|std|dispersion|σ|β)(?:ln)?(?:sa)?|(?:sigma|beta|std|stdev|sd"
+    r"|σ)?lnsa(?:std|sd)?"
+    r"|(?:stdev|sd|standarddeviation|σ)(?:of)?ln(?:sa)?|ln(?:std|sd|stdev|sigma)"
+)
+"""Names of the standard deviation of ln Sa, a plain number, without what parts words."""
+_SCATTERS = re.compile(
+    r"sigma|σ|\bstd|stdev|\bsd\b|standard|deviat|desv|sapma|streu|ecart|scarto|\bcov\b"
+    r"|scatter"
+    r"|dispers|variance|отклон|偏差|ばらつき|标准差|odchyl|τυπικη"
+)
+"""Words for some scatter, of which the measure is not told."""
 
 
 def _place_of_deviation(table: TitledTable) -> int:
     """The column of the standard deviation of ln Sa; 0 without one."""
-    places = range(2, len(table.titles))
-    of = (
-        place
-        for place in places
-        if not table.titles[place].unit and _DEVIATION.fullmatch(table.titles[place].name)
-    )
-    return next(of, 0)
+    for place, title in enumerate(table.titles[2:], 2):
+        name = re.sub(r"[\W_]+", "", folded(title.name))
+        if title.unit.lower() in ("", "ln") and _DEVIATION.fullmatch(name + title.unit):
+            return place
+    for title in table.titles[2:]:
+        if _SCATTERS.search(folded(title.name)):
+            raise RecordError(
+                f"{table.source}:{table.line}: the column {title.name!r} may be the"
+                f" scatter of"
+                " the spectrum; call it sigma_ln [-] if it is the standard deviation of"
+                " ln Sa, else remove it"
+            )
+    return 0
 
 
 def _columns_of(path: Path, source: str) -> TitledTable:
@@ -480,9 +497,15 @@ def _columns_of(path: Path, source: str) -> TitledTable:
     table = titled_table(text, path, RecordError)
     titles = table.titles
     if len(titles) < 2 or titles[0].unit != "s" or canonical_unit(titles[1].unit) is None:
+        odd = [
+            f"{title.name} [{title.unit}]{look_alikes(f'{title.name} {title.unit}')}"
+            for place, title in enumerate(titles[:2])
+            if not (canonical_unit(title.unit or "-") if place else title.unit == "s")
+        ]
         raise RecordError(
             f"{path}:{table.line}: {table.written} should name two columns with units,"
             f" as in 'period [s],acceleration [g]'; accelerations are in {KNOWN_UNITS}"
+            f" (not understood: {', '.join(odd) or 'one title only'})"
         )
     return table
 

@@ -90,6 +90,25 @@ def _date(text: str) -> tuple[tuple[int, int, int], str] | None:
     return None
 
 
+_SLASHED = re.compile(r"\b(\d{1,2})[/.](\d{1,2})[/.](\d{4}|\d{2})\b")
+
+
+def days_of(text: str) -> set[tuple[int, int, int]]:
+    """Year, month and day of a date, in both orders where day and month are not told.
+
+    >>> sorted(days_of("4/6/2009")), days_of("17.08.1999"), days_of("in 1999")
+    ([(2009, 4, 6), (2009, 6, 4)], {(1999, 8, 17)}, set())
+    """
+    dated = _date(text)
+    if dated is None:
+        return set()
+    year, month, day = dated[0]
+    found = {(year, month, day)}
+    if _SLASHED.search(text) and day <= 12 and month <= 12:
+        found.add((year, day, month))
+    return found
+
+
 def _hours_ahead(text: str) -> float:
     for offset, name in _ZONE.findall(text):
         if offset:

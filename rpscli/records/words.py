@@ -10,6 +10,8 @@ import re
 import unicodedata
 from collections.abc import Collection
 
+from rpscli.errors import foreign_letters
+
 _ALONE = str.maketrans({"ı": "i", "ø": "o", "ł": "l", "đ": "d", "−": "-", "’": "'"})
 
 
@@ -41,16 +43,32 @@ def _begins(word: str, vocabulary: Collection[str]) -> bool:
     return any(word[:n] in vocabulary for n in range(shortest, len(word)))
 
 
+def look_alikes(text: str) -> str:
+    """Characters that look like others, by their names; none of words of another script.
+
+    >>> look_alikes("c\u043c/s2"), look_alikes("\u0441\u043c")
+    (" ('\u043c' in it is U+043C, CYRILLIC SMALL LETTER EM)", '')
+    """
+    odd = ""
+    for word in re.findall(r"[^\W\d_]+", text):
+        strange = [c for c in word if not folded(c).isascii() or "\uff00" < c < "\uffef"]
+        if strange and (len(strange) < len(word) or len(word) == 1):
+            odd += "".join(strange)
+    return foreign_letters(odd)
+
+
 def _vocabulary(text: str) -> frozenset[str]:
     return frozenset(map(folded, text.split()))
 
 
 FACTORS = _vocabulary(
-    "factor factors faktor facteur fattore fator coefficient coeff coefficiente koeffizient"
+    "factor factors faktor facteur fattore fator coefficient coeff coefficiente"
+    " koeffizient"
     " katsayi katsayisi carpan scale scaling scalefactor echelle escala scala massstab"
     " olcek skala skalier masshtab масштаб коэффициент множитель коеф multipl mult"
     " multiplier sf calib calibration kalibrier kalibrasyon kalibr gain amplif verstark"
-    " kazanc sensib lsb counts count conversion convers umrechn donusum divis divid teiler"
+    " kazanc sensib lsb counts count conversion convers umrechn donusum divis divid"
+    " teiler"
     " normali normier resolution resolucion auflosung cozunurluk bili beilv beishu xishu"
     " baritsu keisu bairitsu 倍率 係数 系数 比例 換算 συντελεστης κλιμακα wspolczynnik"
     " skalowan mnoznik multiplicador multiplicateur moltiplicatore weight"
@@ -58,7 +76,8 @@ FACTORS = _vocabulary(
 """What is said of a factor on the values."""
 
 TIMES = _vocabulary(
-    "at bei time times hora heure ora uhr uhrzeit saat jam время 時刻 时刻 时间 utc gmt jst temps"
+    "at bei time times hora heure ora uhr uhrzeit saat jam время 時刻 时刻 时间 utc gmt jst"
+    " temps"
     " tiempo tempo zaman zeit"
 )
 NOT_OF_THE_MOTION = _vocabulary(
@@ -80,21 +99,28 @@ NOT_OF_THE_MOTION = _vocabulary(
     ""
     " damping damp dampfung amortiguamiento amortissement smorzamento sonum затухание"
     " natural nat azimuth azimut acimut strike dip rake slip inc inclination cmpinc cmpaz"
-    " elev elevation altitude alt altitud altitudine kot quota height hohe altura yukseklik"
+    " elev elevation altitude alt altitud altitudine kot quota height hohe altura"
+    " yukseklik"
     " hauteur высота 標高 高程 intensity mmi msk jma siddet stress fault arias ia cav pgv pgd"
     " housner temperature battery gps latency network trigger threshold tetik umbral"
-    " soglia bits bit adc channels channel canal kanal chan ch station sta array component"
-    " comp location floor pre preevent posttrigger postevent delay latenz offset mean average"
-    " mittelwert media moyenne promedio ortalama baseline zero start begin end duration dauer"
-    " duracion duree durata sure suresi длительность usable bandwidth nyquist checksum crc"
+    " soglia bits bit adc channels channel canal kanal chan ch station sta array"
+    " component"
+    " comp location floor pre preevent posttrigger postevent delay latenz offset mean"
+    " average"
+    " mittelwert media moyenne promedio ortalama baseline zero start begin end"
+    " duration dauer"
+    " duracion duree durata sure suresi длительность usable bandwidth nyquist checksum"
+    " crc"
     " back backazimuth incidence ray sv velocity vel displacement disp rupture rvt seed"
 )
 """What is said of the earthquake, the station, the instrument, the file."""
 NOT_OF_THE_MOTION |= TIMES
 
 PEAKS = _vocabulary(
-    "pga pha pgah pgav peak amax max maximum maximal maximale maxima maximo massimo massima"
-    " maksimum maksimal maxi picco pico pic spitze spitzen spitzenwert spitzenbeschleunigung"
+    "pga pha pgah pgav peak amax max maximum maximal maximale maxima maximo massimo"
+    " massima"
+    " maksimum maksimal maxi picco pico pic spitze spitzen spitzenwert"
+    " spitzenbeschleunigung"
     " buyuk tepe максимум макс максимальное пик пиковое saidai zuida 最大 μεγιστη szczyt"
 )
 """What is said of a largest value."""
@@ -130,12 +156,35 @@ SERIALS = _vocabulary(
 DIRECTIONS = _vocabulary(
     "component comp componente composante komponente komponent bilesen bileseni"
     " компонента компонент kanal channel chan canal canale direction direccion direzione"
-    " direcao dir richtung yon yonu направление sens sentido sensor_orientation orientation"
+    " direcao dir richtung yon yonu направление sens sentido sensor_orientation"
+    " orientation"
     " orientacion orientazione orientamento ausrichtung azimuth azimut acimut azimuth_deg"
     " heading hcomp fangxiang fangwei hoko houkou 方向 方位 成分 分量 συνιστωσα διευθυνση"
     " skladowa kierunek slozka smer axis eje asse achse eksen ось axe orient"
 )
 """What is said of the direction of a component."""
+
+EARTHQUAKES = _vocabulary(
+    "event evento evenement ereignis olay earthquake eq deprem depremi terremoto sismo"
+    " erdbeben"
+    " seisme землетрясение 地震 jishin dizhen σεισμος trzesienie zemetreseni"
+)
+"""What is said of the earthquake."""
+
+COUNTRIES = _vocabulary(
+    "turkey turkiye taiwan japan italy italia iran chile mexico greece zealand nepal"
+    " usa ca"
+    " california calif nevada alaska armenia china peru india romania croatia ecuador"
+)
+NO_NAMES = _vocabulary(
+    "earthquake eq event of record the sequence mainshock aftershock deprem depremi sismo"
+    " terremoto erdbeben seisme near off coast north south east west central new utc"
+    " gmt jst"
+    " jan feb mar apr may jun jul aug sep oct nov dec january february march april"
+    " june july"
+    " august september october november december"
+)
+"""Words beside the name of an earthquake."""
 
 UNITS = _vocabulary(
     "unit units unidad unidades unita unite unites einheit einheiten birim birimi единица"

@@ -324,8 +324,10 @@ def test_a_conversion_beside_its_file_counts_once(names, kept, told, tmp_path):
     (tmp_path / "weaker.csv").write_text(two_column_text(motion.scaled(0.999)))
     found, notes = expanded([f"{tmp_path}"])
     assert len(found) == kept + 1
-    assert len(notes) == bool(told)
+    assert len(notes) == bool(told) + 1
     assert told in " ".join(notes)
+    assert "times a factor" in notes[-1]
+    assert "weaker.csv (of" in notes[-1]
 
 
 def test_keys_of_an_own_conversion_count_before_its_description(tmp_path):

@@ -50,7 +50,8 @@ _VALUE = re.compile(
 )
 _OTHER_SERIES = re.compile(
     r"\b(VELOCITY|DISPLACEMENT)\s+TIME\b"
-    r"|\b(SPECTR(?:UM|A))\b(?!\W*(?:COMPAT|MATCH))|\b((?:RESPONSE|FOURIER|POWER)\s+SPECTR\w+)"
+    r"|\b(SPECTR(?:UM|A))\b(?!\W*(?:COMPAT|MATCH))|\b((?:RESPONSE|FOURIER"
+    r"|POWER)\s+SPECTR\w+)"
     r"|^\W*(PSA|PSV|SA|SV|SD|RSA|FOURIER)\b.*\bUNITS?\b",
     re.IGNORECASE,
 )

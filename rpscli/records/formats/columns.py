@@ -16,7 +16,7 @@ from typing import NamedTuple, NoReturn
 
 import numpy as np
 
-from rpscli.errors import RecordError, foreign_letters
+from rpscli.errors import RecordError
 from rpscli.records.directions import direction_in
 from rpscli.records.formats.header_lines import Facts, HeaderLines, doubts_of_header
 from rpscli.records.formats.record_text import (
@@ -62,14 +62,15 @@ from rpscli.records.quantities import (
     numbers_in,
     numerals_in,
 )
-from rpscli.records.words import folded
+from rpscli.records.words import folded, look_alikes
 
 _STEP = (
     r"(?<![?&])\b(?:dt|delta[\s_]*t?|Δt|(?:time|sampling)[\s_]*(?:step|interval|period)"
     rf"|equally spaced (?:at|intervals of)){STEP_PATTERN}"
 )
 _RATE = (
-    r"(?<![?&])\b(?:sampl\w*[\s_]*(?:rate|freq\w*)|fs|sps)\b\s*(?:[(\[]\s*(?:hz|sps)\s*[)\]])?"
+    r"(?<![?&])\b(?:sampl\w*[\s_]*(?:rate|freq\w*)|fs|sps)\b\s*(?:[(\[]\s*(?:hz"
+    r"|sps)\s*[)\]])?"
     rf"\s*[=:]?\s*({NUMBER_PATTERN})\s*(?:hz|sps|1/s|samples?\s*/\s*s\w*)?(?![A-Za-z])"
     rf"|(?<![\w.])({NUMBER_PATTERN})\s*(?:sps\b|samples?\s*(?:/|per)\s*s\w*)"
 )
@@ -183,8 +184,10 @@ def _compare(text: RecordText, given: list[ColumnTitle], own: list[ColumnTitle])
         ]
         if known and all(sizes) and sizes[0] != sizes[1]:
             raise text.fault(
-                f"the columns that are given say {mine.unit} for {mine.name!r}, and the title"
-                f" {title.name!r} says {title.unit}; leave them out, or say what a value is:"
+                f"the columns that are given say {mine.unit} for {mine.name!r}, and"
+                f" the title"
+                f" {title.name!r} says {title.unit}; leave them out, or say what a"
+                f" value is:"
                 f" &units=1 {mine.unit}",
                 title.line,
             )
@@ -263,7 +266,8 @@ def _titles_given(text: RecordText, columns: str, width: int) -> list[ColumnTitl
     titles = [title_of(cell, 0) for cell in columns.split(",")]
     if len(titles) != width:
         raise text.fault(
-            f"columns = {columns[:60]} names {len(titles)}, and rows have {width} numbers;"
+            f"columns = {columns[:60]} names {len(titles)}, and rows have {width}"
+            f" numbers;"
             " name each, `-` for one that is not used"
         )
     return titles
@@ -515,7 +519,8 @@ def _refuse_spectra(text: RecordText, table: Table) -> None:
         plain = folded(line.value)
         if _SPECTRUM.search(plain) and not _MATCHED.search(plain):
             raise text.fault(
-                f"the header says {line.value[:60]!r}: this is a spectrum or a curve, not a"
+                f"the header says {line.value[:60]!r}: this is a spectrum or a curve,"
+                f" not a"
                 " record over time; if it is one, say what the columns are:"
                 f" ?columns={'time,' if table.widths[0] > 1 else ''}acceleration [UNIT]",
                 line.line,
@@ -547,7 +552,7 @@ def _refuse_titles(
     """Say what was understood of titles, what not, and what to write."""
     said = [
         f"{title.name[:30] or title.unit!r} is {kind or 'not understood'}"
-        + ("" if kind else foreign_letters(title.name))
+        + ("" if kind else look_alikes(title.name))
         for title, kind in zip(titles, kinds, strict=True)
     ]
     units = [title.unit for title in titles if canonical_unit(title.unit or "-")]

@@ -42,7 +42,8 @@ from rpscli.records.words import (
 _UNIT = rf"(?:{UNIT_PATTERN})"
 _WHOLE_UNIT = re.compile(rf"[\[(]?\s*({_UNIT})\s*[\])]?\.?", re.IGNORECASE)
 _UNIT_INSIDE = re.compile(
-    rf"(?:(?<!\w)(?:in|of|en|auf|als|de|em|w|v|в)\s+|[\[(]\s*)({_UNIT})\s*(?:[\])]|$|[,;.])",
+    rf"(?:(?<!\w)(?:in|of|en|auf|als|de|em|w|v|в)\s+|[\[(]\s*)({_UNIT})\s*(?:[\])]|$"
+    rf"|[,;.])",
     re.IGNORECASE,
 )
 _UNIT_AT_THE_END = re.compile(rf"[^\W\d_]\s+(?!g$|gravity$)({_UNIT})$", re.IGNORECASE)
@@ -63,7 +64,8 @@ _IN_CELLS = re.compile(
 """A key and its value in two cells."""
 _PART = re.compile(r"[;|\t]|,(?=\s*[^\W\d][^:=,]*[:=])|\s{2,}(?=[^\W\d][^:=]*[:=])")
 _TIMES = re.compile(
-    r"\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}(?:T(?=\d))?|\d{1,2}:\d{2}(?!\d)(?::\d{2}(?:\.\d*)?)?Z?"
+    r"\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}(?:T(?=\d))?"
+    r"|\d{1,2}:\d{2}(?!\d)(?::\d{2}(?:\.\d*)?)?Z?"
     r"|\b\d{1,2}\.? [^\W\d]{3,9}\.?,? \d{4}\b|\b[^\W\d]{3,9}\.? \d{1,2},? \d{4}\b"
 )
 """Dates and clock times, which state nothing of the values."""
@@ -74,15 +76,20 @@ _IN_BRACKETS = re.compile(r"[\[(]\s*([^\])]*?)\s*[\])]")
 _HERTZ = re.compile(r"hz|гц|sps|1/s|samples?(?:/s\w*|persec\w*)?|ヘルツ|赫兹")
 
 _SCALED = re.compile(
-    r"(?<![?&(_-])\b(?:normali[sz]ed|normalis\w+|normier\w*|scaled|rescaled|skaliert|escalad\w+"
-    r"|scalat[oi]|normalizzat\w+|normalizad\w+|olceklen\w+|масштабир\w+|нормир\w+|amplified"
+    r"(?<![?&(_-])\b(?:normali[sz]ed|normalis\w+|normier\w*|scaled|rescaled|skaliert"
+    r"|escalad\w+"
+    r"|scalat[oi]|normalizzat\w+|normalizad\w+|olceklen\w+|масштабир\w+|нормир\w+"
+    r"|amplified"
     r"|divided?|dividid\w+|divis[oi]|multipli\w+|moltiplicat\w+|integrated|integriert"
-    r"|integrad\w+|integrat[oi]|half|halved|doubled|twice|x\s*\d|\*\s*\d)\b|^\W*[x×*]\s*\d"
+    r"|integrad\w+|integrat[oi]|half|halved|doubled|twice|x\s*\d|\*\s*\d)\b"
+    r"|^\W*[x×*]\s*\d"
 )
 """Words of sentences that say that values are others than they look."""
 _RAW = re.compile(
-    r"\b(?:raw|uncorrected|unprocessed|unfiltered|unkorrigiert|non corrig\w+|non corrett\w+"
-    r"|no corregid\w+|sin corregir|ham (?:veri|kayit)|duzeltilmemis|brut|необработан\w+)\b"
+    r"\b(?:raw|uncorrected|unprocessed|unfiltered|unkorrigiert|non corrig\w+"
+    r"|non corrett\w+"
+    r"|no corregid\w+|sin corregir|ham (?:veri|kayit)|duzeltilmemis|brut"
+    r"|необработан\w+)\b"
 )
 
 

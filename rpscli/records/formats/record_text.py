@@ -15,7 +15,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.errors import RecordError, foreign_letters, stem_of
+from rpscli.errors import RecordError, stem_of
 from rpscli.records.formats.statements import Statement, unit_behind, whole_number
 from rpscli.records.ground_motion import UNKNOWN, GroundMotion, Recording
 from rpscli.records.quantities import (
@@ -30,12 +30,14 @@ from rpscli.records.quantities import (
     why_no_numbers,
 )
 from rpscli.records.source import Source
+from rpscli.records.words import look_alikes
 
 Array = NDArray[np.float64]
 Meant = TypeVar("Meant")
 
 _BEHIND_A_UNIT = re.compile(
-    r"\s*[\])]?\s*(?:$|[,;.:|#]|[(\[][^)\]0-9]*[)\]]|[A-Za-z_]+[\w\s.]{0,20}[=:]|-\s*[A-Za-z])"
+    r"\s*[\])]?\s*(?:$|[,;.:|#]|[(\[][^)\]0-9]*[)\]]|[A-Za-z_]+[\w\s.]{0,20}[=:]"
+    r"|-\s*[A-Za-z])"
 )
 """What may stand behind a unit: the end, a bracket without numbers, another key."""
 _MULTIPLE = re.compile(
@@ -111,11 +113,6 @@ STEP_REMEDY = (
 _MULTIPLE_OF_UNIT = re.compile(
     rf"(?<![\w.])({NUMBER_PATTERN})\s*\*?\s*({UNIT_PATTERN})", re.IGNORECASE
 )
-
-
-def _look_alikes(text: str) -> str:
-    """Characters of a unit that only look like those of a known one, by their names."""
-    return "" if text.isascii() else foreign_letters(text)
 
 
 def _multiple_in(text: str) -> str:
@@ -314,8 +311,10 @@ class RecordText:
                     found = line[unit.end() :].strip()
             if found:
                 raise self.fault(
-                    f"{line.strip()[:60]!r} has {found[:20]!r} beside the unit, a factor on"
-                    " the values perhaps; say what the values are in, as in ?units=0.001 g"
+                    f"{line.strip()[:60]!r} has {found[:20]!r} beside the unit, a"
+                    f" factor on"
+                    " the values perhaps; say what the values are in, as in"
+                    " ?units=0.001 g"
                     " or ?units=1 g",
                     index,
                 )
@@ -328,7 +327,7 @@ class RecordText:
         if factor is None and (is_unit or unit.strip(" .").lower() not in _JOINING):
             columns = "what the columns are: ?columns=time,acceleration [UNIT]"
             raise self.fault(
-                f"a time in {unit[:_SHOWN]!r}{foreign_letters(unit)} is not known; write s,"
+                f"a time in {unit[:_SHOWN]!r}{look_alikes(unit)} is not known; write s,"
                 f" or ms, or say {columns if is_unit else 'the step: ?dt=0.005'}",
                 line,
             )
@@ -361,8 +360,9 @@ class RecordText:
             if (unit := canonical_unit(each.value)) is None:
                 raise self.fault(
                     f"{each.name} says {each.value.strip()[:_SHOWN]!r}"
-                    f"{_look_alikes(each.value)}, which is not a unit of acceleration that"
-                    f" is known ({KNOWN_UNITS}); give the acceleration file, or say what a"
+                    f"{look_alikes(each.value)}, which is not a unit of acceleration that"
+                    f" is known ({KNOWN_UNITS}); give the acceleration file, or say"
+                    f" what a"
                     f" value is: ?units={_multiple_in(each.value)}",
                     each.line,
                 )
@@ -474,7 +474,7 @@ _TYPESET = {
     0xA0: " ",
     **dict.fromkeys((0x200B, 0x200C, 0x200D, 0x2060, 0xFEFF)),
 }
-"""Minus signs, and blanks that do not part or do not show, as word processors set them."""
+"""Minus signs and blanks as word processors set them."""
 _PADDING = re.compile(rb"\0{2,}|\0\Z")  # of old systems, to the ends of their blocks
 
 

@@ -7,17 +7,20 @@ from collections.abc import Iterable
 
 from rpscli.records.directions import direction_of, says_up
 from rpscli.records.ground_motion import Recording
-from rpscli.records.words import DIRECTIONS, folded, speaks_of
+from rpscli.records.when import seconds_of
+from rpscli.records.words import DIRECTIONS, EARTHQUAKES, folded, speaks_of
 
 _VALUE = r"\s*[:=]\s*([^;|#]*?)\s*(?=$|[;|#]|,\s*[A-Za-z ]+[:=])"
 _KEYS = {
     "station": rf"(?<![?&])\bstation(?:[\s_]*(?:code|name|id|no\.?))?{_VALUE}",
     "direction": (
-        rf"(?<![?&])\b(?:component|comp|direction|dir|orientation|azimuth|channel)\b\.?{_VALUE}"
+        rf"(?<![?&])\b(?:component|comp|direction|dir|orientation|azimuth"
+        rf"|channel)\b\.?{_VALUE}"
     ),
     "event": rf"(?<![?&])\b(?:event|earthquake|eq)(?:[\s_]*name)?{_VALUE}",
     "origin": rf"(?<![?&])\b(?:origin(?:[\s_]*time)?|event[\s_]*(?:time|date)){_VALUE}",
-    "start": rf"(?<![?&])\b(?:start[\s_]*time|time[\s_]*of[\s_]*first[\s_]*sample){_VALUE}",
+    "start": r"(?<![?&])\b(?:start[\s_]*time"
+    r"|time[\s_]*of[\s_]*first[\s_]*sample){_VALUE}",
 }
 """Keys of header lines by the fields of a `Recording`."""
 
@@ -51,6 +54,8 @@ def recording_of(lines: Iterable[str]) -> Recording:
         if known is None or not known.vertical:
             way = _upright(line) or ("direction" not in said and _direction(line))
             said |= {"direction": way} if way else {}
+        for name, text in _of_the_event(line).items():
+            said.setdefault(name, text)
         titled = titled or (None if said else titled_recording(line))
     found = (titled or Recording())._replace(**said)  # type: ignore[arg-type]
     if place:
@@ -58,8 +63,25 @@ def recording_of(lines: Iterable[str]) -> Recording:
     return found
 
 
+_ID = re.compile(r"^\W*(EQID|RSN)\b[^\d\w]*(\d+)\W*$", re.IGNORECASE)
+
+
+def _of_the_event(line: str) -> dict[str, str]:
+    """The earthquake under a key of another language, its time, or its number."""
+    if match := _ID.match(line):
+        return {"event": f"{match[1].upper()} {match[2]}"}
+    key, mark, value = line.partition(":")
+    if not mark or not speaks_of(key, EARTHQUAKES) or not value.strip():
+        return {}
+    if seconds_of(value) is not None:
+        return {"origin": value.strip()[:80]}
+    plain = re.fullmatch(r"[^\W\d_].*", value.strip())
+    return {"event": value.strip()[:80]} if plain else {}
+
+
 _DIP = re.compile(
-    r"\bdip\b\s*[:=]?\s*[+-]?90\b|(?<![\d.])[+-]?90(?:\.0*)?\s*(?:deg\w*\s*)?dip\b(?!\s*[:=\d])"
+    r"\bdip\b\s*[:=]?\s*[+-]?90\b"
+    r"|(?<![\d.])[+-]?90(?:\.0*)?\s*(?:deg\w*\s*)?dip\b(?!\s*[:=\d])"
     r"|\bcmpinc\b\s*[:=]?\s*(?:0|180)(?:\.0*)?\b",
     re.IGNORECASE,
 )
@@ -82,7 +104,8 @@ _NAMES = frozenset(
 """Words of keys that are followed by a name, whatever it means elsewhere."""
 _BELOW = re.compile(
     r"bore-?hole|down-?hole|in-?hole|below\s+(?:the\s+)?ground|\bwithin\b.*rock"
-    r"|rock.*\bwithin\b|\b(?:GL|elevation|level|position)\s*[:=]?\s*-\s*[1-9][\d.]*\s*m?\b"
+    r"|rock.*\bwithin\b|\b(?:GL|elevation|level"
+    r"|position)\s*[:=]?\s*-\s*[1-9][\d.]*\s*m?\b"
     r"|\bstation[\s_]*height\b[^\d-]*-\s*[1-9]"
     r"|\bpozo\b|\bpozzo\b|\bforage\b|bohrloch|sondaj|\bkuyu\w*|скважин|chichu|地中|井下",
     re.IGNORECASE,
@@ -96,7 +119,8 @@ _DEPTH = re.compile(
 """A depth in metres; that of an earthquake is in km."""
 _STRUCTURE = re.compile(
     r"[:=]\s*(?:\w+\s+)?(?:basement|roof|(?:\d+(?:st|nd|rd|th)\s+)?floor|storey|story"
-    r"|penthouse|bodrum|cati|kat \d+|keller|dach|techo|sotano|azotea|tetto|toit|крыша|подвал)\b"
+    r"|penthouse|bodrum|cati|kat \d+|keller|dach|techo|sotano|azotea|tetto|toit|крыша"
+    r"|подвал)\b"
     r"|^\W*(?:roof|basement)\W*$|[:=]\s*floor\s*[:=]?\s*\d|\bfloor\s*[:=]\s*\d"
     r"|\b\d+(?:st|nd|rd|th)\s+floor\b"
 )

@@ -17,7 +17,8 @@ TIME, ACCELERATION, COUNT, UNKNOWN = "time", "acceleration", "count", ""
 """Kinds of column; others are called by their quantity, as `velocity`."""
 
 _OTHER_UNITS = {
-    "velocity": r"[cmk]?m\s*/\s*s(?:ec)?|in\s*/\s*s(?:ec)?|ft\s*/\s*s(?:ec)?|kine|kph|mph",
+    "velocity": r"[cmk]?m\s*/\s*s(?:ec)?|in\s*/\s*s(?:ec)?|ft\s*/\s*s(?:ec)?|kine|kph"
+    "|mph",
     "displacement": r"[cmk]?m|in|inch|ft|km",
     "force": r"[kM]?N|kips?|lbs?|tonf?",
     "counts": r"counts?|cts?|digits?|v|mv|volts?",
@@ -44,24 +45,28 @@ _BRACKETED = re.compile(r"([^\[(]*?)[\s_]*[\[(]([^\])]*)[\])]")
 _BEHIND = re.compile(rf"(.+?)(?:\s+in\s+|[\s_]+)({_ANY})", re.IGNORECASE)
 _TIME = re.compile(
     r"(?:elapsed[\s_]*)?time(?:[\s_]*(?:from|since)[\s_]*\w+)?|t|seconds?|secs?"
-    r"|zeit|datetime|temps|tiempo|tempo|zaman|sure|время|χρονοσ|jikan|shijian|时间|時間|時刻|czas|cas"
+    r"|zeit|datetime|temps|tiempo|tempo|zaman|sure|время|χρονοσ|jikan|shijian|时间|時間|時刻"
+    r"|czas|cas"
     r"|tijd|tid|waktu|vrijeme|ido|aika|thoigian|oras|زمان|זמן|시간|saniye"
 )
 _GROUND = re.compile(r"a_?g", re.IGNORECASE)
 _ACCELERATION = re.compile(
-    r"acc|acn|accn|accels?|acceleration?s?|accelerogram\w*|accelerat\w*|aceler\w*|acceleraz\w*"
+    r"acc|acn|accn|accels?|acceleration?s?|accelerogram\w*|accelerat\w*|aceler\w*"
+    r"|acceleraz\w*"
     r"|akseler\w*|beschl\w*|ivme\w*|ускор\w*|加速度|kasokudo|jiasudu|επιταχ\w*|przysp\w*"
     r"|versnell\w*|zrychl\w*|ubrz\w*|gyorsul\w*|acelerac\w*|acc(?:ns|ew|ud)|a|ag|u|g|가속도"
     r"|aa?cc[xyz]|a[xyz]|ug|[xu]?g?ddot"
 )
 _BESIDE = re.compile(
     r"ground|corr\w*|filt\w*|proc\w*|record\w*|horiz\w*|comp\w*|ch|channel|data|values?"
-    r"|series|history|input|base|raw|uncorr\w*|signal|in|of|the|de|del|la|du|sol|suelo|suolo"
+    r"|series|history|input|base|raw|uncorr\w*|signal|in|of|the|de|del|la|du|sol|suelo"
+    r"|suolo"
     r"|boden|zemin|yer|terreno|th|deg|dir|direction|az|grunt\w*|грунта"
 )
 _DATA = frozenset(("data", "value", "values", "series", "signal", "record"))
 _SPECTRAL = re.compile(
-    r"\bperiods?\b|freq|spectr|spektr|espectr|спектр|\bfft\b|fourier|谱|スペクトル|(?:^|\b|_)(?:p?s_?[adve]|psa|psv|t_?n|rsa|se|sae)(?:$|\b|_)",
+    r"\bperiods?\b|freq|spectr|spektr|espectr|спектр|\bfft\b|fourier|谱|スペクトル|(?:^|\b"
+    r"|_)(?:p?s_?[adve]|psa|psv|t_?n|rsa|se|sae)(?:$|\b|_)",
     re.IGNORECASE,
 )
 _OTHERS = {
@@ -74,7 +79,8 @@ _OTHERS = {
     "a distance": r"\bdist\w*|\bdepth\b",
 }
 _COUNT = re.compile(
-    r"(?:sample|index|indice|indeks|idx|no\.?|nr\.?|n|i|num(?:ber)?|#|row|point|sira|nummer)s?",
+    r"(?:sample|index|indice|indeks|idx|no\.?|nr\.?|n|i|num(?:ber)?|#|row|point|sira"
+    r"|nummer)s?",
     re.IGNORECASE,
 )
 REMARK = re.compile(r"\w*(?:corr|filt|proc|ground|raw)\w*", re.IGNORECASE)
