@@ -126,6 +126,8 @@ def _event_names(recording: Recording) -> set[str]:
     call `Northridge` what flatfiles call `Northridge-01`, and shocks of one sequence are
     not independent.
     """
+    if match := _NUMBERED.fullmatch(recording.event):
+        return {f"event {match[1].upper()} {match[2]}"}
     named = earthquake(recording.event)
     names = {f"event {named}"} if _YEAR.search(named) else set[str]()
     seconds = seconds_of(recording.origin)
@@ -147,8 +149,6 @@ def _by_words(recording: Recording) -> set[str]:
     Spellings differ in accents, hyphens, the country and the order of day and month.
     """
     event = recording.event
-    if match := _NUMBERED.fullmatch(event):
-        return {f"event {match[1].upper()} {match[2]}"}
     places = [word for word in words_of(event) if word not in NO_NAMES]
     own = [word for word in places if word not in COUNTRIES] or places
     if not own:

@@ -154,7 +154,8 @@ def contents_of_columns(text: RecordText) -> list[Channel]:
 
 _IS_STATEMENT = re.compile(rf":|=\s*[+-]?\.?\d|{PEAK_PATTERN}", re.IGNORECASE)
 _ENDS_IN_A_NUMBER = re.compile(
-    rf"\w\s.*(?<![\w.])\d[\d.,]*\s*(?:{UNIT_PATTERN}|[a-z]*/[a-z]+)?$", re.IGNORECASE
+    rf"\w\s.*(?<![\w.])\d[\d.,]*\s*(?:{UNIT_PATTERN}|[^\s\d()\[\]]{{1,8}})?$",
+    re.IGNORECASE,
 )
 """Words above one column that state a number, and are no title."""
 _OWN_TITLES = "Time (s)  Acceleration (m/s2)"

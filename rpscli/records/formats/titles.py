@@ -117,7 +117,7 @@ class ColumnTitle(NamedTuple):
             return self._other_by_name or known
         if self.name == "T" or timed:  # a period, or what changes over time
             return ACCELERATION if self.unit == ACROSS else UNKNOWN
-        if self._accelerates and not {*words_of(self.name)} <= _DATA:
+        if self._accelerates and any(map(_ACCELERATION.fullmatch, words_of(self.name))):
             return ACCELERATION  # a unit that is none of acceleration is refused by name
         if direction_of(self.name) is not None and (not self.unit or self.remarks):
             return ACCELERATION
