@@ -30,6 +30,7 @@ _MANY = 3
 def forms_of(name: str) -> dict[str, str]:
     """Words of a name, or ends of words, by the name with a blank in their place."""
     found = {}
+    name = re.sub(r"[-_ ]+", "_", name).replace("_.", ".")
     for match in _WORD.finditer(name):
         start, end = match.span()
         tail = _TAIL.fullmatch(match[0])
@@ -94,17 +95,15 @@ def require_two(motions: Mapping[Source, GroundMotion], folder: Path | None) -> 
         told = [motions[of].recording for of in three]
         if len({each.station for each in told if each.station}) > 1:
             continue
-        if len({each.event or each.origin for each in told}) > 1:
+        events = {each.event or each.origin for each in told}
+        if len(events - {""}) > 1:
             continue
         if not _all_horizontal(words, [stated(of, folder).direction for of in three]):
             names = ", ".join(PurePath(of.place).name for of in three)
             raise RecordError(
-                f"{names}: are of one length and differ in a word of their names;"
-                f" which of"
-                " the third component beside the two horizontal ones is vertical, neither"
-                " names nor headers tell. Call it ...-UP, or name the records that are"
-                " meant"
-                " one by one"
+                f"{names}: are of one length, as two horizontal components and a vertical"
+                " one are, and neither names nor headers tell which is vertical. Call that"
+                " one ...-UP, or name the records that are meant one by one"
             )
 
 

@@ -6,11 +6,13 @@ import pytest
 from rpscli.errors import RecordError
 from rpscli.records.directions import direction_of, directions_of
 from rpscli.records.families import direction_by_name
+from rpscli.records.formats.at2 import at2_text
 from rpscli.records.formats.titles import title_of
 from rpscli.records.loading import expanded, load_components, load_record
 from rpscli.records.quantities import ACCELERATIONS, canonical_unit
 from rpscli.records.recordings import clusters
 from rpscli.records.target import load_target
+from rpscli.report.motions import two_column_text
 
 TIMES = 0.005 * np.arange(200)
 VALUES = 0.2 * np.sin(2.0 * np.pi * TIMES) * np.sin(np.pi * TIMES) ** 2 / 0.6
@@ -396,3 +398,37 @@ def test_a_scatter_that_is_not_told_is_asked_for(name, tmp_path):
     (tmp_path / "t.csv").write_text(f"T [s],Sa [g],{name}\n0.1,0.5,0.6\n1,0.2,0.7\n")
     with pytest.raises(RecordError, match=r"call it sigma_ln \[-\]"):
         load_target(f"{tmp_path / 't.csv'}")
+
+
+@pytest.mark.parametrize("name", ["STA_HLZ", "STA_dusey", "ABC_N00E"])
+@pytest.mark.parametrize("ending", [".at2", ".txt"])
+def test_a_conversion_keeps_what_a_name_says_and_no_more(name, ending, tmp_path):
+    motion = read(tmp_path, series("dt: 0.005", "units: g"), name=f"{name}.txt")
+    text = (at2_text if ending == ".at2" else two_column_text)(motion)
+    back = read(tmp_path, text, name=f"q{ending}").recording
+    assert back == motion.recording
+    assert back.direction == name.rpartition("_")[2]
+    assert (back.event, back.station) == ("", "")
+
+
+@pytest.mark.parametrize(
+    "line", ["Duzce 1999-11-12 Bolu UP", "NOWHERE 01/02/01 1200, ABC UP"]
+)
+def test_the_last_word_of_an_at2_title_says_up(line, tmp_path):
+    rows = "\n".join(f"{x:15.7E}" for x in VALUES)
+    head = f"PEER\n{line}\nACCELERATION IN UNITS OF G\nNPTS= 200, DT= .005 SEC\n"
+    assert read(tmp_path, head + rows + "\n", name="x.at2").recording.is_vertical
+
+
+@pytest.mark.parametrize("words", ["SF= 2.0", "FACTOR: 0.5", "xyz = 981", "PGA= .9 G"])
+def test_numbers_beside_the_unit_of_an_at2_header(words, tmp_path):
+    rows = "\n".join(f"{x:15.7E}" for x in VALUES)
+    head = "PEER\nA 7, 1/2/2001, B 12, 0\nACCELERATION IN UNITS OF G. {}\n"
+    text = head.format(words) + "NPTS= 200, DT= .005 SEC\n" + rows + "\n"
+    if "PGA" in words:
+        (doubt,) = read(tmp_path, text, name="x.at2").warnings
+        assert "the header says 0.9" in doubt
+        return
+    with pytest.raises(RecordError, match=r"not understood|factor on the values"):
+        read(tmp_path, text, name="x.at2")
+    assert read(tmp_path, text, "?units=1 g", name="x.at2").npts == 200

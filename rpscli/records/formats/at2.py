@@ -12,9 +12,10 @@ import re
 from dataclasses import replace
 
 from rpscli.constants import STANDARD_GRAVITY
+from rpscli.records.directions import direction_of
 from rpscli.records.formats.header_lines import Facts, HeaderLines, doubts_of_header
 from rpscli.records.formats.record_text import Channel, RecordText, Stated
-from rpscli.records.formats.recording_words import titled_recording
+from rpscli.records.formats.recording_words import titled_recording, upright_word
 from rpscli.records.formats.statements import (
     PEAK_PATTERN,
     STATED_PATTERN,
@@ -150,7 +151,11 @@ def _recording(title: list[str]) -> Recording:
     parts = [part.strip() for line in title for part in line.split(";")]
     known = filter(None, map(titled_recording, parts))
     longer = (part for part in parts if part.count(",") > 1)
-    return next(known, None) or Recording(next(longer, ""))
+    found = next(known, None) or Recording(next(longer, ""))
+    if direction_of(found.direction) is not None or (title and _OWN.match(title[0])):
+        return found
+    upright = next(filter(None, map(upright_word, parts)), "")
+    return found._replace(direction=upright) if upright else found
 
 
 def _header(text: RecordText) -> _Header | None:

@@ -46,6 +46,7 @@ _UNIT_INSIDE = re.compile(
     rf"|[,;.])",
     re.IGNORECASE,
 )
+_UNIT_OF_KEY = re.compile(rf"(?:{_UNIT_INSIDE.pattern})\s*$", re.IGNORECASE)
 _UNIT_AT_THE_END = re.compile(rf"[^\W\d_]\s+(?!g$|gravity$)({_UNIT})$", re.IGNORECASE)
 _NUMBER = STATED_PATTERN.replace("[+-]?", "[-+−]?", 1)
 _BEHIND = rf"\s*({_UNIT}|[^\W\d][\w/^*.%²-]{{0,15}}|%\w*)?"
@@ -112,7 +113,7 @@ class Said(NamedTuple):
     @property
     def unit(self) -> str | None:
         """The unit of acceleration that it is in; None without one."""
-        inside = _UNIT_INSIDE.search(self.key)
+        inside = _UNIT_OF_KEY.search(self.key)
         return canonical_unit(self.behind or (inside[1] if inside else "") or "-")
 
     @property

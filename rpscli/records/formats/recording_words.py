@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from rpscli.records.directions import direction_of, says_up
 from rpscli.records.ground_motion import Recording
 from rpscli.records.when import seconds_of
-from rpscli.records.words import DIRECTIONS, EARTHQUAKES, folded, speaks_of
+from rpscli.records.words import DIRECTIONS, EARTHQUAKES, folded, speaks_of, words_of
 
 _VALUE = r"\s*[:=]\s*([^;|#]*?)\s*(?=$|[;|#]|,\s*[A-Za-z ]+[:=])"
 _KEYS = {
@@ -52,7 +52,7 @@ def recording_of(lines: Iterable[str]) -> Recording:
                 said[name] = match[1][:80]
         known = direction_of(said.get("direction", ""))
         if known is None or not known.vertical:
-            way = _upright(line) or ("direction" not in said and _direction(line))
+            way = upright_word(line) or ("direction" not in said and _direction(line))
             said |= {"direction": way} if way else {}
         for name, text in _of_the_event(line).items():
             said.setdefault(name, text)
@@ -144,7 +144,7 @@ def place_of(line: str) -> str:
     return "in a building" if _STRUCTURE.search(plain) else ""
 
 
-def _upright(line: str) -> str:
+def upright_word(line: str) -> str:
     """The word of a line that says that the component is vertical; else nothing.
 
     It is the value of any key, or stands at the end of the line.
@@ -172,6 +172,9 @@ def _direction(line: str) -> str:
     match = _WORD.match(line)
     if match and direction_of(match[1]) is not None:
         return match[1]
+    first, _, last = line.strip().rpartition(" ")
+    if len(words_of(first)) == 1 and speaks_of(first, DIRECTIONS) and direction_of(last):
+        return last
     key, mark, value = line.partition(":") if ":" in line else line.partition("=")
     word = re.sub(r"[\[(].*?[\])]", " ", value).strip(" .,;")
     known = mark and speaks_of(key, DIRECTIONS) and len(word) <= 12
@@ -190,10 +193,11 @@ def titled_recording(line: str) -> Recording | None:
     if dated:
         at = dated[-1]
         date = parts[at]
+        event = ", ".join(part for part in parts[: at + 1] if part != "-")
         return Recording(
-            f"{', '.join(parts[:at])}, {date}",
-            station=", ".join(parts[at + 1 : -1]),
-            direction=parts[-1],
+            event,
+            station=", ".join(part for part in parts[at + 1 : -1] if part != "-"),
+            direction="" if parts[-1] == "-" else parts[-1],
             origin=date if re.search(r"\d:\d\d", date) else "",
         )
     direction = re.sub(r"\s*\(.*\)$", "", parts[-1])

@@ -114,7 +114,8 @@ class ColumnTitle(NamedTuple):
             return TIME
         if accelerates:
             known = ACCELERATION if self._accelerates or not self.name else UNKNOWN
-            return self._other_by_name or known
+            named = direction_of(self.name) is not None
+            return known if named else self._other_by_name or known
         if self.name == "T" or timed:  # a period, or what changes over time
             return ACCELERATION if self.unit == ACROSS else UNKNOWN
         if self._accelerates and any(map(_ACCELERATION.fullmatch, words_of(self.name))):
