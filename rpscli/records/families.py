@@ -102,7 +102,8 @@ def require_two(motions: Mapping[Source, GroundMotion], folder: Path | None) -> 
             names = ", ".join(PurePath(of.place).name for of in three)
             raise RecordError(
                 f"{names}: are of one length, as two horizontal components and a vertical"
-                " one are, and neither names nor headers tell which is vertical. Call that"
+                " one are, and neither names nor headers tell which is vertical. Call"
+                " that"
                 " one ...-UP, or name the records that are meant one by one"
             )
 

@@ -111,7 +111,8 @@ NOT_OF_THE_MOTION = _vocabulary(
     " duration dauer"
     " duracion duree durata sure suresi длительность usable bandwidth nyquist checksum"
     " crc"
-    " back backazimuth incidence ray sv velocity vel displacement disp rupture rvt seed"
+    " az fc flo fhi rms std iso odak derinligi back backazimuth incidence ray sv velocity"
+    " vel displacement disp rupture rvt seed"
 )
 """What is said of the earthquake, the station, the instrument, the file."""
 NOT_OF_THE_MOTION |= TIMES

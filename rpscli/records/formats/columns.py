@@ -202,7 +202,7 @@ def _titles_of_file(table: Table, width: int) -> list[ColumnTitle]:
             cells = _cells(line.value, separator)
             if len(cells) != width or any(map(_IS_STATEMENT.search, cells)):
                 continue
-            if width == 1 and _ENDS_IN_A_NUMBER.search(line.value):
+            if width == 1 and _ENDS_IN_A_NUMBER.search(line.value[-80:]):
                 continue
             bare = [cell.strip("()[]") for cell in cells]
             if not units and width > 1 and all(map(ANY_UNIT.fullmatch, bare)):

@@ -51,19 +51,25 @@ _UNIT_AT_THE_END = re.compile(rf"[^\W\d_]\s+(?!g$|gravity$)({_UNIT})$", re.IGNOR
 _NUMBER = STATED_PATTERN.replace("[+-]?", "[-+−]?", 1)
 _BEHIND = rf"\s*({_UNIT}|[^\W\d][\w/^*.%²-]{{0,15}}|%\w*)?"
 _KEYED = re.compile(
-    rf"([^\W\d_][^:=;|]*?)\s*[:=]\s*[\[(]?\s*({_NUMBER})(?![\d.,:])[\])]?{_BEHIND}",
+    rf"([^\W\d_][^:=;|]{{0,60}}?)\s*[:=]\s*[\[(]?\s*({_NUMBER})(?![\d.,:])[\])]?{_BEHIND}",
     re.IGNORECASE,
 )
 _AT_THE_END = re.compile(
-    rf"\W*([^\W\d_][^:=;|]*?)\s+({_NUMBER})(?![\d.,:]){_BEHIND}\s*[.)\]]*", re.IGNORECASE
+    rf"\W{{0,9}}([^\W\d_][^:=;|]{{0,60}}?)\s+({_NUMBER})(?![\d.,:]){_BEHIND}"
+    r"\s*[.)\]]*",
+    re.IGNORECASE,
 )
 _ALONE = re.compile(rf"\s*[x×*]?\s*({_NUMBER})()\s*", re.IGNORECASE)
+_WIDTH = 240
+"""Letters of a line that state something."""
 _IN_CELLS = re.compile(
     rf"^([^\W\d][^,;:=]*)[,;\t]\s*({_NUMBER}(?:\s*{_UNIT})?|{_UNIT})\s*[,;]*$",
     re.IGNORECASE,
 )
 """A key and its value in two cells."""
-_PART = re.compile(r"[;|\t]|,(?=\s*[^\W\d][^:=,]*[:=])|\s{2,}(?=[^\W\d][^:=]*[:=])")
+_PART = re.compile(
+    r"[;|\t]|,(?=\s*[^\W\d][^:=,]{0,60}[:=])|\s{2,}(?=[^\W\d][^:=]{0,60}[:=])"
+)
 _TIMES = re.compile(
     r"\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}(?:T(?=\d))?"
     r"|\d{1,2}:\d{2}(?!\d)(?::\d{2}(?:\.\d*)?)?Z?"
@@ -155,7 +161,7 @@ class HeaderLines:
     def parts(self) -> Iterator[tuple[int, str]]:
         """Parts of the lines, with neither dates, clock times nor options of sources."""
         for index, line in self.lines:
-            bare = _OF_A_SOURCE.sub(" ", line)
+            bare = _OF_A_SOURCE.sub(" ", line[:_WIDTH])
             bare = _IN_CELLS.sub(r"\1: \2", bare)
             for part in _PART.split(_TIMES.sub(" ", bare)):
                 if part.strip():
@@ -235,7 +241,7 @@ def doubts_of_header(header: HeaderLines, facts: Facts) -> list[str]:
         elif header.text.multiple is None and not _is_understood(said, facts):
             _refuse(header.text, said.words, said.line, facts)
     for index, line in header.lines:
-        plain = folded(line)
+        plain = folded(line[:_WIDTH])
         if header.text.multiple is None and _SCALED.search(plain):
             _refuse(header.text, line.strip()[:60], index, facts)
         if match := _RAW.search(plain):

@@ -252,7 +252,7 @@ class RecordText:
         shown = numeral[:_SHOWN]
         if re.fullmatch(r"[+-]?[0-9]*,[0-9]+", numeral):
             fault = f"{shown} has a decimal comma; write {shown.replace(',', '.')}"
-            fault += " in the file" + ", or say it behind its name, as in ?dt=0.005"
+            fault += " in the file, or say it behind its name, as in ?dt=0.005"
         elif not re.fullmatch(NUMBER_PATTERN, numeral) or not math.isfinite(
             to_float(numeral)
         ):
@@ -334,7 +334,10 @@ class RecordText:
         return factor or 1.0
 
     def agreed(
-        self, said: Sequence[Statement], meaning: Callable[[Statement], Meant]
+        self,
+        said: Sequence[Statement],
+        meaning: Callable[[Statement], Meant],
+        remedy: str = "",
     ) -> Meant | None:
         """The meaning that several statements of a header
         share; None if there is none.
@@ -344,7 +347,7 @@ class RecordText:
                 raise self.fault(
                     f"{other.name} = {other.value.strip()[:_SHOWN]} contradicts"
                     f" {said[0].name} = {said[0].value.strip()[:_SHOWN]} of line"
-                    f" {said[0].line + 1}; correct the header",
+                    f" {said[0].line + 1}; correct the header{remedy}",
                     other.line,
                 )
         return meaning(said[0]) if said else None
@@ -352,9 +355,8 @@ class RecordText:
     def unit(self, statements: Sequence[Statement]) -> str | None:
         """The one unit of acceleration that several statements name."""
         if self.multiple is not None:  # the user says what a value is
-            statements = [each for each in statements if canonical_unit(each.value)]
-            if len({canonical_unit(each.value) for each in statements}) > 1:
-                return self.units
+            known = {unit for each in statements if (unit := canonical_unit(each.value))}
+            return self.units if len(known) != 1 else known.pop()
 
         def meaning(each: Statement) -> str:
             if (unit := canonical_unit(each.value)) is None:
@@ -362,13 +364,14 @@ class RecordText:
                     f"{each.name} says {each.value.strip()[:_SHOWN]!r}"
                     f"{look_alikes(each.value)}, which is not a unit of acceleration that"
                     f" is known ({KNOWN_UNITS}); give the acceleration file, or say"
-                    f" what a"
-                    f" value is: ?units={_multiple_in(each.value)}",
+                    f" what a value is: ?units={_multiple_in(each.value)}",
                     each.line,
                 )
             return unit
 
-        return self.agreed(statements, meaning)
+        first = canonical_unit(statements[0].value) if statements else None
+        remedy = f", or say what a value is, as in ?units=1 {first}"
+        return self.agreed(statements, meaning, remedy)
 
     def series(
         self,
