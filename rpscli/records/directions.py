@@ -67,6 +67,10 @@ _AZIMUTH = re.compile(r"(?:az|azimuth)?(0|\d{2,3}|\d(?=d|°))(?:deg|°|degrees)?
 """An azimuth; 1, 2 and 3 alone are numbers of components."""
 
 
+_DECIMAL = re.compile(r"\d[.,]0*[1-9]")
+"""What is a number and no azimuth."""
+
+
 def _word(text: str) -> str:
     """A name without punctuation, and without `component` before it."""
     bare = re.sub(r"\([+-]?\)|[\s_.+-]", "", folded(text)).removeprefix("component")
@@ -79,7 +83,7 @@ def direction_of(text: str) -> RecordDirection | None:
     >>> direction_of("U-D").vertical, direction_of("N00E").azimuth, direction_of("Pacoima")
     (True, 0.0, None)
     """
-    word = _word(text)
+    word = "" if _DECIMAL.search(text) else _word(text)
     if _VERTICAL_WORDS.fullmatch(word) or _VERTICAL_SIGNS.fullmatch(word):
         return UP
     azimuth = _COMPASS.get(word, _AXES.get(word))

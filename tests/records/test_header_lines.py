@@ -77,7 +77,7 @@ def test_a_unit_under_any_key_is_compared(line, tmp_path):
         "Vergrotingsfaktor 0.5", "kerroin: 2", "szorzo = 0.25", "współczynnik: 10",
         "modulus: 981", "xyz: 3.5", "Masstab 1:1000", "sf,0.5", "LSB: 0.1 g", "bias 0.3 V",
         "number of points 800", "Antal punkter: 800", "divided by 10", "normalizzato",
-        "масштабировано", "values were doubled", "x 2",
+        "масштабировано", "values were doubled", "x 2", "0.5 times as recorded", "# 0.5",
     ],
 )  # fmt: skip
 @pytest.mark.parametrize("mark", ["", "# "])
@@ -96,6 +96,7 @@ def test_what_is_not_understood_is_refused_and_one_option_cures_it(line, mark, t
         "serial: 1234", "date: 1999-08-17", "Saat: 00:01:38", "damping 0.7", "Tiefe 17 km",
         "Kocaeli 1999", "sample 1 of 1", "Duration: 1 s", "200 Hz", "scale factor: 1",
         "PGV: 45.3 cm/s", "trigger level 0.01 g", "full range: 2 g", "npts 200",
+        "1 g = 9.81 m/s2", "El Centro, Imperial Valley, 5/18/1940, 180", "unscaled",
     ],
 )  # fmt: skip
 def test_what_does_not_bear_on_the_values_is_read(line, tmp_path):
@@ -272,7 +273,7 @@ def test_letters_by_what_stands_beside_them(words, vertical):
     assert tuple(way.vertical for way in directions_of(words)) == vertical
 
 
-@pytest.mark.parametrize("word", ["1", "2", "3", "H3", "HN3", "aux", "Pacoima"])
+@pytest.mark.parametrize("word", ["1", "3", "H3", "HN3", "aux", "0.5", "Pacoima"])
 def test_numbers_of_components_are_no_directions(word):
     assert direction_of(word) is None
 

@@ -371,7 +371,8 @@ def _accelerations(titles: list[ColumnTitle]) -> list[int]:
         for i, title in enumerate(titles)
         if title.kind == UNKNOWN and (not title.unit or canonical_unit(title.unit))
     ]
-    several = len(known) > 1 or (known and len(unknown) > 1)
+    named = all(re.fullmatch(r"[^\W\d][\w .°+-]*", titles[i].name) for i in unknown)
+    several = named and (len(known) > 1 or (known and len(unknown) > 1))
     return sorted([*known, *unknown]) if several else known
 
 

@@ -77,6 +77,8 @@ _TIMES = re.compile(
 )
 """Dates and clock times, which state nothing of the values."""
 _OF_A_SOURCE = re.compile(r"[?&]\w+=\S*|\S+:/\S*")
+_TITLED = re.compile(r"[^:=]*\w,[^:=]*,\s*[0-3]?\d\d\s*$")
+"""A title of a recording that ends in an azimuth."""
 _YEAR = re.compile(r"(?:18|19|20)\d\d")
 _IN_BRACKETS = re.compile(r"[\[(]\s*([^\])]*?)\s*[\])]")
 
@@ -88,7 +90,7 @@ _SCALED = re.compile(
     r"|scalat[oi]|normalizzat\w+|normalizad\w+|olceklen\w+|масштабир\w+|нормир\w+"
     r"|amplified"
     r"|divided?|dividid\w+|divis[oi]|multipli\w+|moltiplicat\w+|integrated|integriert"
-    r"|integrad\w+|integrat[oi]|half|halved|doubled|twice|x\s*\d|\*\s*\d)\b"
+    r"|integrad\w+|integrat[oi]|half|halved|doubled|twice|\d\s*times|x\s*\d|\*\s*\d)\b"
     r"|^\W*[x×*]\s*\d"
 )
 """Words of sentences that say that values are others than they look."""
@@ -174,11 +176,13 @@ class HeaderLines:
             found = [*_KEYED.finditer(part)]
             if not found and self.loose and not re.search(r"[:=]\s*\S", part):
                 whole = _AT_THE_END.fullmatch(part)
-                if whole and not _YEAR.fullmatch(whole[2]):
+                if whole and not _YEAR.fullmatch(whole[2]) and not _TITLED.match(part):
                     found = [whole]
                 elif (alone := _ALONE.fullmatch(part)) and not _YEAR.fullmatch(alone[1]):
                     yield Said("", alone[1], "", index, part)
             for match in found:
+                if canonical_unit(match[1]) and canonical_unit(match[3] or "-"):
+                    continue  # 1 g = 9.81 m/s2
                 yield Said(match[1], match[2], match[3] or "", index, part[:60])
 
     def units(self) -> list[Statement]:
