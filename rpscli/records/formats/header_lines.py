@@ -59,7 +59,7 @@ _AT_THE_END = re.compile(
     r"\s*[.)\]]*",
     re.IGNORECASE,
 )
-_ALONE = re.compile(rf"\s*[x×*]?\s*({_NUMBER})()\s*", re.IGNORECASE)
+_ALONE = re.compile(rf"[\s#x×*]*({_NUMBER})()\s*", re.IGNORECASE)
 _WIDTH = 240
 """Letters of a line that state something."""
 _IN_CELLS = re.compile(
