@@ -257,7 +257,8 @@ class Budget:
         for (cause, stem), rows in found.items():
             if any(self._moves(row, least) for row in rows):
                 rows.sort(key=lambda row: _stem(self.rows[row].change)[1])
-                values = [self.rows[row].change.removeprefix(stem) for row in rows]
+                changes = dict.fromkeys(self.rows[row].change for row in rows)
+                values = [each.removeprefix(stem) for each in changes]
                 change = f"{stem}{BETWEEN.join(values)}"
                 named[f"{cause}: {change}" if change else cause] = rows
         return named
