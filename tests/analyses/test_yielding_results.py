@@ -23,8 +23,8 @@ from rpscli.analyses.timehistory import time_history
 from rpscli.model.impact import ImpactLaw
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.report.bundles import history_columns, storey_columns
-from rpscli.sweep.names import label
 from rpscli.report.timehistory import timehistory_document, timehistory_tables
+from rpscli.sweep.names import label
 from rpscli.sweep.table import points_csv
 
 pytestmark = [

@@ -81,7 +81,7 @@ OF_A_BUILDING = [
     ("motion.at2", "12", "18:18: record.source = 12", "put it in quotes"),
     ("motion.at2", "' '", "18:18", "empty"),
     ("motion.at2", '"\\ud800"', "18:18: record.source: '\\ud800' holds half a letter"),
-    ("motion.at2", "a.txt, units: mg", "18:32: record.units = 'mg' is no unit of", "cm/s2, mm/s2"),
+    ("motion.at2", "a.txt, units: kg", "18:32: record.units = 'kg' is no unit of", "cm/s2, mm/s2"),
     ("vibration: auto", "vibration: atuo", "19:28", "a time in s", "did you mean auto?"),
     ("free_vibration: auto", "overturning_limit: 0.5", "19:31", ">= 1"),
     ("free_vibration: auto", "recontact_tolerance: 1", "19:33", "> 0 and < 1"),
