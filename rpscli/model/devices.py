@@ -32,6 +32,7 @@ class ViscousDamper(Device):
 
     coefficient: float
     exponent: float = 1.0
+    at: tuple[tuple[float, float], ...] = ()
 
     kind = "viscous"
     results = ("max_damper_force",)
@@ -64,6 +65,7 @@ class FrictionDamper(Device):
     """P = -F_d sgn(u_b'), F_d [N]; at rest any |P| <= F_d."""
 
     force: float
+    at: tuple[tuple[float, float], ...] = ()
 
     kind = "friction"
     results = ("max_damper_force",)

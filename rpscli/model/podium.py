@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from dataclasses import astuple, dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from numbers import Integral
 from typing import Any, ClassVar, NamedTuple, TypeAlias
@@ -20,6 +20,7 @@ from rpscli.model.column import ColumnDesign
 from rpscli.model.contact import Bed, Contact, bed_of
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.superstructure import Superstructure
+from rpscli.model.twist import Twist
 from rpscli.physics.laws import geometry
 from rpscli.shown import Shown, with_unit
 
@@ -71,6 +72,8 @@ class PodiumStructure(Shown):
         What the ends bear on; rigid or compliant in full contact.
     column
         Section and material of a column; None where it is not designed.
+    twist
+        How the slab turns about the vertical; None where that is not computed.
 
     Raises
     ------
@@ -104,6 +107,7 @@ class PodiumStructure(Shown):
     superstructure_y: Superstructure | None = None
     contact: Contact = field(default_factory=Contact)
     column: ColumnDesign | None = None
+    twist: Twist | None = None
     bed: Bed | None = field(init=False)
     """Compliant full contact; None on rigid ends."""
 
@@ -135,6 +139,8 @@ class PodiumStructure(Shown):
         self._refuse_impacts()
         if self.column is not None:
             self.column.refuse_line(self.bearing)
+        if self.twist is not None:
+            self.twist.refuse(self)
         object.__setattr__(self, "bed", bed_of(self))  # raises what it does not have
 
     def _refuse_impacts(self) -> None:
@@ -515,6 +521,11 @@ class Device(ABC):
     """True if each column has one; its force and stroke are those of one then."""
 
     @property
+    def places(self) -> tuple[tuple[float, float], ...]:
+        """On the plan, each with an equal part of it [m]; none: in the middle."""
+        return getattr(self, "at", ())
+
+    @property
     @abstractmethod
     def kind(self) -> str:
         """Its name in a case."""
@@ -532,7 +543,8 @@ class Device(ABC):
 
     def constants(self, structure: PodiumStructure) -> tuple[float, ...]:
         """Numbers of its law, as the kernels read them."""
-        return astuple(self)
+        names = (each.name for each in fields(self) if each.name != "at")
+        return tuple(getattr(self, name) for name in names)
 
     def at_rest(
         self, structure: PodiumStructure, rotation: Array, farthest: float

@@ -1,7 +1,7 @@
 """Stability of a slab against turning about the vertical, by the plan of its columns.
 
 Displaced by u along e and turned by a small psi, a slab that warps freely gains the energy
-psi^2 W [r_par^2 F/(W u) + r_perp^2 F'/W]/2 (Theory, section 2): each column follows its own
+psi^2 W [r_par^2 F/(W u) + r_perp^2 F'/W]/2 (Theory (17.12)): each column follows its own
 head, and the force F of one that moved on is smaller. Where that is below zero a turn grows.
 """
 

@@ -268,16 +268,24 @@ def announce_to(listener: Listener) -> None:
 
 def prepare(ways: int, lanes: int) -> None:
     """Compile a kernel that is not compiled yet, and tell of it."""
-    from rpscli.physics.integrate import in_background
     from rpscli.physics.kernels import is_ready, kernel
 
-    if is_ready(ways, lanes):
-        return
     name = KERNELS.get((ways, lanes), "kernel")
+    prepare_kernel(name, lambda: is_ready(ways, lanes), lambda: kernel(ways, lanes))
+
+
+def prepare_kernel(
+    name: str, is_ready: Callable[[], bool], make: Callable[[], object]
+) -> None:
+    """Make a kernel that is not ready yet, and tell of it by its name."""
+    from rpscli.physics.integrate import in_background
+
+    if is_ready():
+        return
     with _lock:
         first = name not in _begun
         _begun.add(name)
     with ExitStack() as told:
         for listener in _listeners if first else ():
             told.enter_context(listener(name))
-        in_background(kernel, ways, lanes)
+        in_background(make)
