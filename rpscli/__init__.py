@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from rpscli.analyses.results import TimeHistoryResult
     from rpscli.analyses.settings import TimeHistorySettings
     from rpscli.analyses.timehistory import time_history
+    from rpscli.analyses.twist import twist_history
     from rpscli.case.case import Case, load_case
     from rpscli.errors import RpsError
     from rpscli.model.bearing import Bearing
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
         Superstructure,
         profile_stiffnesses,
     )
+    from rpscli.model.twist import Twist
     from rpscli.records.ground_motion import GroundMotion, MotionComponents
     from rpscli.records.loading import load_components, load_record
     from rpscli.records.measures import response_spectrum
@@ -56,11 +58,13 @@ _HOMES = {
     "analyses.results": "TimeHistoryResult",
     "analyses.settings": "TimeHistorySettings",
     "analyses.timehistory": "time_history",
+    "analyses.twist": "twist_history",
     "case.case": "Case load_case",
     "errors": "RpsError",
     "model.bearing": "Bearing",
     "model.impact": "ImpactLaw",
     "model.podium": "PodiumStructure",
+    "model.twist": "Twist",
     "model.superstructure": "ModalDamping RayleighDamping Superstructure profile_stiffnesses",
     "records.ground_motion": "GroundMotion MotionComponents",
     "records.measures": "response_spectrum",
@@ -86,6 +90,7 @@ __all__ = [
     "Superstructure",
     "TimeHistoryResult",
     "TimeHistorySettings",
+    "Twist",
     "__version__",
     "demand",
     "figures",
@@ -102,6 +107,7 @@ __all__ = [
     "response_spectrum",
     "table",
     "time_history",
+    "twist_history",
 ]
 
 

@@ -94,6 +94,10 @@ NEEDS = {
         f"curved ends, {_DESIGNED}",
         lambda structure: _has_columns(structure) and not structure.bearing.is_flat,
     ),
+    "twist": Need(
+        "podium.twist, by which the slab turns about the vertical, in the case",
+        lambda structure: structure.twist is not None,
+    ),
     "damper": Need("a damper in podium.devices", _device_with("max_damper_force")),
     "stop": Need("a stop in podium.devices", _device_with("max_stop_force")),
     "tendon": Need(

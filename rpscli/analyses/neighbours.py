@@ -116,6 +116,8 @@ def _computed(
 ) -> list[Neighbour]:
     if result.outcome == "failed" or result.history["steps"] > MOST_STEPS_BESIDE:
         return []
+    if result.twist is not None:  # of which motions beside it would know nothing
+        return []
     names = [quantity.name for quantity in result.quantities if quantity.limit]
     sampled = sorted({quantity.name for quantity in SAMPLED} & {*limited})
     # One by one: the kernel for many at a time would have to be compiled first.

@@ -207,6 +207,16 @@ SAMPLED = (
     _Q("crushed_width_ratio", "-", "crushed width ratio", limit="0.15", needs="designed columns",
         meaning="largest depth of a plastic edge over the width of the end"),
     _Q("sliding_time", "s", "columns slide at", needs="podium.friction"),
+    _Q("max_twist", "rad", "twist about the vertical", r"$\psi$", limit="0.02", needs="twist"),
+    _Q("residual_twist", "rad", "residual twist", limit="0.002", needs="twist"),
+    _Q("max_corner_displacement", "m", "displacement of a column", limit="0.3", needs="twist",
+        meaning="largest displacement of the head of the column that moves most"),
+    _Q("corner_factor", "-", "corner factor", limit="1.5", needs="twist",
+        meaning="largest displacement of a column over that of the slab's centre, both turning"),
+    _Q("max_column_rotation", "rad", "rotation of a column", limit="0.1", needs="twist",
+        meaning="of the one that tilts most, where the slab turns"),
+    _Q("column_rotation_ratio", "-", "rotation ratio of a column", limit="0.5", needs="twist",
+        meaning="largest rotation of a column over its own critical one, where the slab turns"),
 )  # fmt: skip
 """Scalars of a history that is followed with all its samples: a single one, or those of a
 study with `whole_histories: true`."""

@@ -25,6 +25,7 @@ from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.outcomes import STOOD
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.analyses.trace import Event, Trace, sampled
+from rpscli.analyses.twist import OfTurningSlab, TwistResult
 from rpscli.errors import listed
 from rpscli.model.column import LARGEST_EDGE
 from rpscli.model.devices import ViscousDamper
@@ -97,7 +98,7 @@ class ColumnForces:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class TimeHistoryResult(Demand):
+class TimeHistoryResult(OfTurningSlab, Demand):  # type: ignore[override]
     """Response of a structure to a record: its largest demands,
     samples and events; SI units.
 
@@ -120,6 +121,9 @@ class TimeHistoryResult(Demand):
         vertical period of the building are given.
     column_demand
         What the most loaded column has to carry; None where `podium.column` is not given.
+    twist
+        The slab that turns about the vertical, beside all that is of its centre alone;
+        None where `podium.twist` is not given.
     """
 
     record: GroundMotion
@@ -130,6 +134,7 @@ class TimeHistoryResult(Demand):
     motion: MotionComponents
     axial: AxialForces | None = None
     column_demand: ColumnDemand | None = None
+    twist: TwistResult | None = None
 
     def to_dataframe(self) -> Any:
         """The samples as a table of pandas, which must be installed:

@@ -19,7 +19,10 @@ from rpscli.analyses.kernels.history import SampledHistory, sampled_history
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings, require_inputs
 from rpscli.analyses.trace import Trace, event_list, trace_of
+from rpscli.analyses.twist import TwistResult, twist_history
 from rpscli.model.podium import PodiumStructure
+from rpscli.physics import state
+from rpscli.physics.state import Record
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 
 
@@ -55,19 +58,31 @@ def time_history(
         If the two components have different time steps.
     """
     settings, motion = require_inputs(structure, record, settings, vertical)
+    twist = twist_history(structure, motion, settings) if structure.twist else None
     run = sampled_history(structure, motion, settings)
     fixed = _on_fixed_base(structure, run, motion) if with_fixed_base else None
-    result = TimeHistoryResult(
+    return _with_columns(TimeHistoryResult(
         structure=structure,
-        history=run.history,
+        history=_worse(run.history, twist),
         record=motion.horizontal,
         settings=settings,
         trace=trace_of(structure, run),
         events=event_list(run.log, both=motion.y is not None),
         fixed_base=fixed,
-        motion=motion,
-    )
-    return _with_columns(result)
+        motion=motion, twist=twist,
+    ))  # fmt: skip
+
+
+def _worse(history: Record, twist: TwistResult | None) -> Record:
+    """What a history left behind, with the outcome of a slab that ended worse turning."""
+    if twist is None:
+        return history
+    code = int(twist.run.slab["outcome"])
+    if code <= max(int(history["outcome"]), state.SURVIVED):
+        return history
+    changed = history.copy()
+    changed["outcome"] = code
+    return changed
 
 
 def _on_fixed_base(

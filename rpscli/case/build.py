@@ -16,6 +16,8 @@ from rpscli.case.schema.case_file import (
     PodiumSection,
     RowsSection,
     SuperstructureSection,
+    TorsionSection,
+    TwistSection,
 )
 from rpscli.model.bearing import Bearing, first_order_critical_curvature_ratio
 from rpscli.model.column import ColumnDesign
@@ -32,6 +34,7 @@ from rpscli.model.superstructure import (
     first_mode_strengths,
     profile_stiffnesses,
 )
+from rpscli.model.twist import Twist
 
 COMPLETE = "the rules of the case make sure that the value is given"
 
@@ -142,6 +145,25 @@ def built(bearing: Bearing, file: CaseFile) -> PodiumStructure:
         superstructure_y=None if across is None else _building(across, at_uplift),
         contact=Contact(**podium.contact.model_dump()),
         column=column,
+        twist=twist_of(podium.twist, floors.torsion),
+    )
+
+
+def twist_of(
+    section: TwistSection | None, torsion: TorsionSection | None
+) -> Twist | None:
+    """How the slab turns, and the storeys on it; None where that is not computed."""
+    if section is None:
+        return None
+    scatter = section.scatter
+    storeys = {} if torsion is None else torsion.model_dump()
+    return Twist(
+        scatter=0.0 if scatter is None else scatter.slenderness,
+        seed=1 if scatter is None else scatter.seed,
+        factors=section.factors,
+        pivot_friction=section.pivot_friction,
+        seats=None if isinstance(section.seats, str) else section.seats,
+        **storeys,
     )
 
 

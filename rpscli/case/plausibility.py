@@ -232,12 +232,13 @@ def _pressed_arcs(structure: PodiumStructure) -> Iterator[Doubt]:
 
 
 def _turning_slab(structure: PodiumStructure) -> Iterator[Doubt]:
-    """A slab that may turn about the vertical, which no history computes."""
+    """A slab that may turn about the vertical, where no history computes it."""
     ratio = unstable_from(structure)
-    if ratio is None:
+    if ratio is None or structure.twist is not None:
         return
     yield Doubt(
-        "podium.plan: that the slab may turn about the vertical is not computed; turns"
+        "podium.plan: that the slab may turn about the vertical is not computed without"
+        " podium.twist; turns"
         " grow once it moves {0} of its critical displacement, so that columns at corners"
         " may move 1.1 to 1.5 times as far as the figure given (one motion in six: 1.5 to"
         " 2), unless their ends resist pivoting with a lever of some 20 mm of the weight,"

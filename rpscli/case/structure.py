@@ -72,6 +72,11 @@ OF_THE_MODEL = {
     "rows": "podium.plan.rows",
     "rows_y": "podium.plan.y.rows",
     "contact": "podium.contact",
+    "twist": "podium.twist",
+    "factors": "podium.twist.factors",
+    "scatter": "podium.twist.scatter",
+    "pivot_friction": "podium.twist.pivot_friction",
+    "seats": "podium.twist.seats",
     "initial_rotation": "analysis.initial_rotation",
 }
 """Keys of a case by the word with which the model begins a refusal."""

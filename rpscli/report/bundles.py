@@ -26,9 +26,11 @@ from rpscli.report.figures import (
 )
 from rpscli.report.figures.look import FIGURES, USUAL, Look
 from rpscli.report.figures.style import Draw, figure_files
+from rpscli.report.figures.twist import twist_figure
 from rpscli.report.files import Files
 from rpscli.report.storey_demands import fixed_base_demands, isolated_demands
 from rpscli.report.table import Column, columns_of, csv_lines, csv_text
+from rpscli.report.twist import twist_columns, way_columns
 
 
 def _figures(figures: Mapping[str, Draw], result: Any, title: str, look: Look) -> Files:
@@ -102,6 +104,9 @@ def timehistory_files(result: TimeHistoryResult, title: str, look: Look = USUAL)
     yield "timehistory.csv", csv_lines(history_columns(result))
     yield "events.csv", csv_text(event_columns(result.events))
     yield "storeys.csv", csv_text(storey_columns(result))
+    if result.twist is not None:
+        yield "columns.csv", csv_text(twist_columns(result.twist))
+        yield "twist.csv", csv_lines(way_columns(result.twist))
     of = result.structure
     of_pair = result.trace.y is not None
     words = title, history.record_name(result)
@@ -112,6 +117,7 @@ def timehistory_files(result: TimeHistoryResult, title: str, look: Look = USUAL)
         ("devices", bearing.devices_figure, of.devices),
         ("column", bearing.column_figure, result.column_demand),
         ("orbit", history.orbit_figure, of_pair),
+        ("twist", twist_figure, result.twist),
         ("rotation", history.rotation_figure, True),
         ("displacements", history.displacement_figure, True),
     )

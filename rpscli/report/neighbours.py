@@ -27,6 +27,8 @@ def neighbours_texts(
             f"one history: with 1 % less or more motion {_reached(near)}; with up to 3 %"
             f" {_reached(motions)}{beside}{_chaotic(result)}: judge by several records"
         )
+    elif result.twist is not None:
+        yield "one history: motions beside it are not followed where the slab turns"
     elif result.outcome != "failed":
         yield (
             f"one history: its {result.history['steps']} steps are too many to look at"

@@ -39,6 +39,7 @@ from rpscli.report.table import (
     shown,
     standing,
 )
+from rpscli.report.twist import twist_document, twist_parts
 from rpscli.sweep.statistics.verdicts import Verdict
 
 OUTCOMES = {
@@ -70,6 +71,7 @@ def timehistory_tables(
     yield from filter(None, [contact_text(result.structure)])
     yield from demand_tables(result)
     yield from column_table(result)
+    yield from twist_parts(result)
     if verdicts:
         yield limits_table(verdicts)
         yield from doubt_texts(verdicts)
@@ -519,5 +521,6 @@ def timehistory_document(result: TimeHistoryResult) -> dict[str, Any]:
             name: of for name, of in asdict(result.energy).items() if name not in unknown
         },
         "devices": [asdict(demand) for demand in result.devices],
+        "twist": twist_document(result.twist),
         "warnings": result.warnings,
     }

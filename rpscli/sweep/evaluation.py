@@ -369,8 +369,10 @@ def run_batch(context: StudyContext, points: Sequence[Point]) -> PointResults:
         else:
             requests[row] = request
     rows = np.array([*requests], np.int64)
-    run = _whole if context.plan.whole else _together
-    for members, ended, sampled in run([*requests.values()]):
+    given = [*requests.values()]
+    turns = any(request.structure.twist for request in given)
+    run = _whole if context.plan.whole or turns else _together
+    for members, ended, sampled in run(given):
         at = rows[members]
         if isinstance(ended, str):
             results.messages.update(dict.fromkeys(at.tolist(), ended))
@@ -432,6 +434,9 @@ def _whole(requests: list[DemandRequest]) -> Iterator[Run]:
             yield [number], whole, {}
         else:
             sampled = rq.values_of(whole, rq.SAMPLED)
+            if whole.twist is not None:  # of the column that tilts most
+                worst = "max_rotation", "rotation_ratio"
+                sampled |= {name: getattr(whole, name) for name in worst}
             ended = Demands.of_one(whole.structure, whole.history)
             yield (
                 [number],

@@ -29,6 +29,8 @@ from rpscli.model.devices import DAMPERS
 from rpscli.model.impact import CONTACT_TIME, IMPACT_LAWS, LONGEST_CONTACT
 from rpscli.records.quantities import KNOWN_UNITS, canonical_unit
 
+Place = Annotated[float, Quantity("m", symbol="of a place")]
+
 
 class DeviceSection(Section):
     """A device between ground and cap beam; its kind says which keys it has."""
@@ -56,6 +58,15 @@ class DeviceSection(Section):
     """tendon: P_0 of one, while the structure stands"""
     yield_force: Annotated[float | None, Quantity("N", symbol="P_y", above=0)] = None
     """tendon: P_y of one; left out: it never yields"""
+    at: (
+        Annotated[
+            tuple[tuple[Place, Place], ...],
+            must_be(list, "places on the plan, as in [[0 m, 0 m], [10 m, 10 m]]"),
+        ]
+        | None
+    ) = None
+    """viscous and friction with podium.twist: places on the plan, each with an equal part
+    of the damper; left out: in the middle of the columns"""
     lever: Annotated[float | None, Quantity("m", symbol="f", above=0)] = None
     """rolling_resistance: f, lever by which the normal force lies ahead of the contact; a
     moment f N at either end of the columns"""
@@ -115,6 +126,21 @@ class AcrossSection(Section):
     """storey stiffness in y in place of period and profile: one value, or a list"""
 
 
+class TorsionSection(Section):
+    """How storeys twist about the vertical, with podium.twist."""
+
+    period_ratio: Annotated[
+        float, Quantity(symbol="T_x/T_twist, both uncoupled", at_least=0.2, at_most=5)
+    ] = 1.2
+    """first period in x over that in twist, both without eccentricity"""
+    eccentricity: tuple[
+        Annotated[float, Quantity(at_least=-0.5, at_most=0.5)],
+        Annotated[float, Quantity(at_least=-0.5, at_most=0.5)],
+    ] = (0.0, 0.0)
+    """of the centre of stiffness of every storey from that of mass, in parts of the plan's
+    lengths in x and y; accidental eccentricity of codes is 0.05, of either sign"""
+
+
 class SuperstructureSection(Section):
     """The building on the cap beam: a shear building."""
 
@@ -150,6 +176,8 @@ class SuperstructureSection(Section):
     y: AcrossSection | None = None
     """another stiffness in the second horizontal direction; left out:
     the same as in the first"""
+    torsion: TorsionSection | None = None
+    """how storeys twist, with podium.twist; left out: a period ratio of 1.2, concentric"""
 
 
 class DimensionsSection(Section):
@@ -319,6 +347,33 @@ class ColumnSection(Section):
     """plates under and over the columns; left out: like the column"""
 
 
+class ScatterSection(Section):
+    """Columns that differ from each other."""
+
+    slenderness: Annotated[float, Quantity(at_least=0, at_most=0.2, remedy="2 % is 0.02")]
+    """standard deviation of the slenderness over its mean"""
+    seed: Annotated[int, Whole(0, 2**31)] = 1
+    """of what is drawn: run several where only the size is known"""
+
+
+class TwistSection(Section):
+    """The slab turns about the vertical, each column on its own head; needs podium.plan
+    with rows and y.rows, and both components.
+    """
+
+    scatter: ScatterSection | None = None
+    """columns of unequal slenderness, drawn"""
+    factors: tuple[Annotated[float, Quantity(at_least=0.5, at_most=2)], ...] = ()
+    """in place of scatter: on the slenderness of each column, row by row"""
+    pivot_friction: Annotated[float, Quantity("m", symbol="lever", at_least=0)] = 0.0
+    """lever of the weight by which friction resists the pivoting of ends; 0 is cautious,
+    2 to 15 mm are estimates, which nobody has measured"""
+    seats: Annotated[
+        float | Literal["free"], Quantity("m", at_least=2e-4, words=("free",))
+    ] = "free"
+    """how far the slab sinks at a column under its weight; free: it warps freely"""
+
+
 class PodiumSection(Section):
     """Columns and cap beam."""
 
@@ -354,6 +409,8 @@ class PodiumSection(Section):
     column: ColumnSection | None = None
     """section and material of a column; give its moment and
     the pressure under its ends"""
+    twist: TwistSection | None = None
+    """the slab turns about the vertical; left out: that is not computed"""
     devices: tuple[Annotated[DeviceSection, OWN_DAMPERS], ...] = ()
     """dampers, stops and tendons between ground and cap beam, at most 8"""
 

@@ -1,0 +1,73 @@
+"""A slab that turns, from the command line: files, verdicts, studies."""
+
+import csv
+
+import pytest
+
+from tests.analyses.test_twist import CASE
+
+RECORD = (
+    'record: {x: "synthetic:?pga=0.5g&duration=6&dt=0.01&seed=1",'
+    ' y: "synthetic:?pga=0.5g&duration=6&dt=0.01&seed=2"}\n'
+)
+STUDY = """\
+rps: 1
+title: Seeds
+base: turns.yaml
+vary:
+  - podium.twist.scatter.seed: [1, 2]
+whole_histories: true
+reports: [demand]
+"""
+
+
+@pytest.fixture
+def turns(workplace):
+    """A case with limits in the working folder."""
+    text = CASE + RECORD + "limits: {corner_factor: 1.0001, max_twist: 1 rad}\n"
+    (workplace / "turns.yaml").write_text(text, "utf-8")
+    return workplace
+
+
+def test_files_verdicts_and_a_real_figure(turns, rps_json, figures):
+    document = rps_json("timehistory", "turns.yaml", "-o", "out", exit_code=10)
+    assert document["corner_factor"] > 1.0001
+    assert document["twist"]["columns"]["x"] == [-5, 5, -5, 5]
+    assert (
+        abs(document["twist"]["energy"]["residual"])
+        < 1e-6 * (document["twist"]["energy"]["input"])
+    )
+    exceeded = {each["name"]: each["exceeded"] for each in document["verdicts"]}
+    assert exceeded["corner_factor"]
+    assert not exceeded["max_twist"]
+    with (turns / "out/columns.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 4
+    largest = max(float(row["max_displacement [m]"]) for row in rows)
+    assert largest == pytest.approx(document["max_corner_displacement"], rel=1e-5)
+    with (turns / "out/twist.csv").open(encoding="utf-8") as file:
+        turned = [abs(float(row["psi [rad]"])) for row in csv.DictReader(file)]
+    # At samples; the largest may lie between.
+    assert 0.97 * document["max_twist"] < max(turned) <= document["max_twist"] * 1.00001
+    assert (turns / "out/twist.png").stat().st_size > 10_000
+
+
+def test_what_is_told(turns, rps):
+    told = rps("timehistory", "turns.yaml", "--figures", "none", exit_code=10).stdout
+    for words in ("the slab turns by", "slenderness", "run both signs and five seeds"):
+        assert words in told.replace("\n", " ")
+    assert "is not computed" not in rps("check", "turns.yaml").stderr
+
+
+def test_a_study_of_seeds_judges_the_turn(turns, rps_json):
+    text = STUDY + "limits: {corner_factor: 1.0001}\n"
+    (turns / "seeds.yaml").write_text(text, "utf-8")
+    rps_json("sweep", "seeds.yaml", "-o", "swept", exit_code=None)
+    with (turns / "swept/points.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    factors = [float(row["corner_factor [-]"]) for row in rows]
+    assert len(set(factors)) == 2
+    assert min(factors) > 1.0
+    ratios = [float(row["rotation_ratio [-]"]) for row in rows]
+    columns = [float(row["column_rotation_ratio [-]"]) for row in rows]
+    assert all(a >= b for a, b in zip(ratios, columns, strict=True))
