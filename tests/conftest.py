@@ -12,6 +12,8 @@ from hypothesis import settings
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
+import conformance
+
 from rpscli.records.loading import load_record
 
 # A loaded machine is no reason to fail: no test is timed.
@@ -58,3 +60,28 @@ def records_folder():
     if not folder or not Path(folder).is_dir():
         pytest.skip("RPS_RECORDS does not name a folder of records")
     return Path(folder)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item, call):
+    """A test that passed, and whose rows are not those of rpscli/conformance.json, fails."""
+    if call.when == "setup":
+        conformance.begin()
+    report = yield
+    if call.when == "call" and report.passed:
+        wrong = conformance.conclude(item.nodeid, _known_rows(item.config))
+        if wrong:
+            report.outcome = "failed"
+            report.longrepr = (
+                "rpscli/conformance.json differs (cd tests; python -m conformance):\n"
+                + "\n".join(wrong)
+            )
+    return report
+
+
+def _known_rows(config):
+    if not hasattr(config, "known_rows"):
+        config.known_rows = (
+            [] if os.environ.get(conformance.WRITING) else conformance.rows_of_file()
+        )
+    return config.known_rows

@@ -1,4 +1,4 @@
-"""Levels of evidence: the table of VERIFICATION.md, from marks on tests.
+"""Levels of evidence: the second table of CONFORMANCE.md, from marks on tests.
 
 `@pytest.mark.evidence("devices", "exact")` on a test, or in `pytestmark` of a module, says what it
 is evidence of, and of which kind. `cd tests; python -m evidence` writes the table again.
@@ -11,7 +11,7 @@ from collections import Counter
 from pathlib import Path
 
 TESTS = Path(__file__).parent
-DOCUMENT = TESTS.parent / "rpscli" / "VERIFICATION.md"
+DOCUMENT = TESTS.parent / "rpscli" / "CONFORMANCE.md"
 BEGIN, END = "<!-- evidence: from marks on tests -->", "<!-- end of evidence -->"
 
 KINDS = {
@@ -80,27 +80,39 @@ def tests_of(path):
     return found
 
 
-def table():
-    """Rows by capability, columns by kind; each file with the number of its tests."""
+def _cells():
+    """Of each capability and kind the files, each with the number of its tests."""
     cells = {}
     for path in sorted(TESTS.rglob("test_*.py")):
         place = path.relative_to(TESTS.parent).as_posix()
         link = f"[{path.stem.removeprefix('test_')}](../{place})"
         for mark, count in tests_of(path).items():
             cells.setdefault(mark, []).append(f"{link} {count}")
+    return cells
+
+
+def without(kind):
+    """Capabilities that have no evidence of a kind."""
+    cells = _cells()
+    return [each for each in CAPABILITIES if (each, kind) not in cells]
+
+
+def table():
+    """Rows by capability, columns by kind."""
+    cells = _cells()
     lines = ["| capability | " + " | ".join(KINDS.values()) + " |", "|---" * 5 + "|"]
     for capability in CAPABILITIES:
         row = (", ".join(cells.get((capability, kind), ["**none**"])) for kind in KINDS)
         lines.append(f"| {capability} | " + " | ".join(row) + " |")
     for kind, name in KINDS.items():
-        there = [each for each in CAPABILITIES if (each, kind) in cells]
-        without = [each for each in CAPABILITIES if each not in there]
+        lacking = [each for each in CAPABILITIES if (each, kind) not in cells]
+        there = [each for each in CAPABILITIES if each not in lacking]
         told = (
-            "; ".join(without)
-            if len(without) < len(there)
+            "; ".join(lacking)
+            if len(lacking) < len(there)
             else f"all but {'; '.join(there)}"
         )
-        lines.append(f"\nWithout {name}: {told} ({len(without)} of {len(CAPABILITIES)}).")
+        lines.append(f"\nWithout {name}: {told} ({len(lacking)} of {len(CAPABILITIES)}).")
     return "\n".join(lines)
 
 

@@ -18,8 +18,9 @@ from rpscli.cli import program
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "rpscli"
-GUIDE, THEORY, VERIFICATION = (
-    PACKAGE / f"{x}.md" for x in ("GUIDE", "THEORY", "VERIFICATION")
+GUIDE, THEORY, VERIFICATION, CONFORMANCE, ERRATA = (
+    PACKAGE / f"{x}.md"
+    for x in ("GUIDE", "THEORY", "VERIFICATION", "CONFORMANCE", "ERRATA")
 )
 
 QUICK = "tests/test_readme.py::test_commands_run_in_their_order"
@@ -43,6 +44,7 @@ PAGES = {
 } | dict.fromkeys(
     (
         "rpscli/VERIFICATION.md",
+        "rpscli/CONFORMANCE.md",
         "rpscli/analyses/certified/README.md",
         "rpscli/case/starter.yaml",
         "rpscli/case/starter_study.yaml",

@@ -1,4 +1,4 @@
-"""What the package says of itself: requirements, links, evidence, and what a release needs."""
+"""What the package says of itself: requirements, links, and what a release needs."""
 
 import re
 import runpy
@@ -11,7 +11,6 @@ from types import SimpleNamespace
 
 import pytest
 import yaml
-from evidence import DOCUMENT, with_table
 
 from rpscli.version import VERSION
 
@@ -110,8 +109,3 @@ def test_links_of_the_readme_lead_to_the_repository(monkeypatch):
             rf"^{re.escape(source)}/(blob|raw)/v{re.escape(VERSION)}/", "", link
         )
         assert here == link or (ROOT / here.partition("#")[0]).exists()
-
-
-def test_the_table_is_what_the_marks_say():
-    text = DOCUMENT.read_text(encoding="utf-8")
-    assert with_table(text) == text, "write it again: cd tests; python -m evidence"

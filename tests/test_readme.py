@@ -35,6 +35,8 @@ DOCUMENTS = [
     docs.GUIDE,
     docs.THEORY,
     docs.VERIFICATION,
+    docs.CONFORMANCE,
+    docs.ERRATA,
     docs.PACKAGE / "DECISIONS.md",
     docs.ROOT / ".github" / "CONTRIBUTING.md",
     docs.ROOT / "CHANGELOG.md",

@@ -79,7 +79,16 @@ html_theme_options = {
 }
 html_sidebars = {
     name: []
-    for name in ("index", "gallery", "guide", "theory", "verification", "changelog")
+    for name in (
+        "index",
+        "gallery",
+        "guide",
+        "theory",
+        "verification",
+        "conformance",
+        "errata",
+        "changelog",
+    )
 }
 copybutton_selector = (
     "div.highlight-sh pre, div.highlight-yaml pre, div.highlight-python pre"

@@ -18,6 +18,8 @@ PAGES = {
     "rpscli/GUIDE.md": "guide",
     "rpscli/THEORY.md": "theory",
     "rpscli/VERIFICATION.md": "verification",
+    "rpscli/CONFORMANCE.md": "conformance",
+    "rpscli/ERRATA.md": "errata",
     "rpscli/GLOSSARY.md": "reference/glossary",
     "CHANGELOG.md": "changelog",
     "cases/compdyn2021/README.md": "cases/compdyn2021",
@@ -36,6 +38,8 @@ PAGES = {
 SET = {
     "theory",
     "verification",
+    "conformance",
+    "errata",
     "reference/glossary",
     *filter(re.compile("cases/|certified/").match, PAGES.values()),
 }

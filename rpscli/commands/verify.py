@@ -20,6 +20,7 @@ from rpscli.report.files import heading, write_whole
 from rpscli.report.table import Heading, Part, Table, shown
 
 if TYPE_CHECKING:
+    from rpscli.analyses.conformance import Recomputed
     from rpscli.analyses.verification import Comparison, Key
 
 DIGITS = 10
@@ -63,9 +64,22 @@ OF_OTHERS = (
         "Correct digits that --score requires; fewer in one answer end with exit code 6."
     ),
 )
+@click.option(
+    "--table",
+    is_flag=True,
+    help=(
+        "Compute again the rows of the table of conformance that need no tests, each with"
+        " what is expected, its share of the tolerance and a verdict."
+    ),
+)
 @terminal_options
 def command(
-    *, problems: Path | None, score: str | None, digits: float, terminal: Terminal
+    *,
+    problems: Path | None,
+    score: str | None,
+    digits: float,
+    table: bool,
+    terminal: Terminal,
 ) -> None:
     """Compute the certified problems, and count how many digits are correct.
 
@@ -75,7 +89,12 @@ def command(
     """
     if problems is not None and score is not None:
         raise UsageError("--problems writes what --score reads; take one of them")
-    if problems is not None:
+    if table and (problems is not None or score is not None):
+        raise UsageError("--table computes rows here; take it without the others")
+    if table:
+        announce_compilation(terminal)
+        _show_table(terminal)
+    elif problems is not None:
         _write_problems(problems, terminal)
     elif score is not None:
         from rpscli.analyses.verification import answers_of_file
@@ -140,6 +159,50 @@ def _conclude(
         parts.append(f"not answered: {', '.join(left)}")
     terminal.finish(
         document, parts, VerificationMismatch("\n".join(faults)) if off else None
+    )
+
+
+def _show_table(terminal: Terminal) -> None:
+    """Rows by capability, each computed again by this installation."""
+    from rpscli.analyses.conformance import known_rows, recomputed
+
+    rows = recomputed(_own_answers())
+    off = [each for each in rows if not each.holds]
+    document = {
+        **heading("verify"),
+        "compared": len(rows),
+        "mismatches": len(off),
+        "rows_of_tests": len(known_rows()),
+        "rows": [each.document() for each in rows],
+    }
+    parts: list[Part] = []
+    heads = ("quantity", "expected", "computed", "share", "verdict")
+    for capability, group in groupby(rows, lambda each: each.row.capability):
+        cells = [
+            (each.row.quantity, *_compared_numbers(each), each.verdict) for each in group
+        ]
+        parts += [Heading(capability), Table.of_texts(heads, cells)]
+    parts.append(Heading(f"{len(rows)} rows computed again, {len(off) or 'none'} off"))
+    parts.append(
+        f"the tests compare {len(known_rows())}: CONFORMANCE.md and conformance.json have"
+        " the authority, source and test of each"
+    )
+    faults = [f"{len(off)} of {len(rows)} rows {INSTALLATION}"]
+    for each in off:
+        expected, computed, share = _compared_numbers(each)
+        text = f"{computed} instead of {expected}, {share} tolerances"
+        faults.append(f"{each.row.quantity}: {text} ({each.row.capability})")
+    terminal.finish(
+        document, parts, VerificationMismatch("\n".join(faults)) if off else None
+    )
+
+
+def _compared_numbers(each: Recomputed) -> tuple[str, str, str]:
+    """Expected, computed, share of the tolerance."""
+    return (
+        f"{each.row.expected:.{DIGITS}g}",  # no more digits than were printed
+        f"{each.computed:.{DIGITS}g}",
+        shown(each.share, 2),
     )
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from conformance import conforms
 from paper_structures import (
     building,
     ground,
@@ -47,9 +48,11 @@ def test_upright_columns_share_the_moment_of_the_shears(pair):
     push = ground([0.0, 1.0, 0.0], 0.1)
     motion = MotionComponents(push.scaled(0.6), y=push.scaled(0.8)) if pair else push
     result = time_history(of, motion, AT_ONCE)
-    assert result.column_moment == pytest.approx(
-        of.bearing.half_height * 105e3 * 220.0 / 420.0, rel=1e-12
-    )
+    moment = of.bearing.half_height * 105e3 * 220.0 / 420.0
+    conforms(
+        "forces in columns, friction", "moment of an upright column [N m]", moment,
+        result.column_moment, 1e-12 * moment, "hand calculation", "H (50 + 55 kN)",
+    )  # fmt: skip
     assert (result.contact_pressure_ratio, result.crushed_width_ratio) == (0.0, 0.0)
     assert time_history(replace(of, column=None), motion, AT_ONCE).column_moment is None
     # An elastic joint or an edge cannot give more than N B.

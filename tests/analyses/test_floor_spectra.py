@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from conformance import conforms
 from paper_structures import known, needs_compiled_kernels
 from scipy.integrate import solve_ivp
 from sweep.small_studies import csv_rows
@@ -34,10 +35,15 @@ def test_a_sudden_acceleration_counts_twice_without_damping():
     found = floor_spectra(floors, 0.01, PERIODS, 0.0)
     # Peaks between samples: fifty a period leave 0.2 %.
     wanted = np.array([[2.0], [6.0]]) * np.ones(3)
-    np.testing.assert_allclose(found.pseudo_acceleration, wanted, rtol=2e-3)
-    np.testing.assert_allclose(
-        found.displacement, wanted * (PERIODS / (2 * np.pi)) ** 2, rtol=2e-3
-    )
+    moved = wanted * (PERIODS / (2 * np.pi)) ** 2
+    for name, expected, mine in (
+        ("Sa [m/s2]", wanted, found.pseudo_acceleration),
+        ("Sd [m]", moved, found.displacement),
+    ):
+        conforms(
+            "floor spectra", f"{name} of a sudden acceleration, undamped", expected, mine,
+            2e-3 * expected, "closed form", "twice the acceleration",
+        )  # fmt: skip
 
 
 @pytest.mark.evidence("floor spectra", "exact")
@@ -81,7 +87,10 @@ def test_fixed_base_against_a_building_with_its_equipment():
     wanted = float(np.max(np.abs(solved.y[-2])))
     found = known(fixed_base_floor_spectra(result, np.array([period]), ratio))
     # Floors are linear between samples in ours, 1/12 (omega_6 dt)^2 at the highest mode.
-    assert found.displacement[-1, 0] == pytest.approx(wanted, rel=2e-3)
+    conforms(
+        "floor spectra", "Sd [m] on the roof, fixed base", wanted, found.displacement[-1, 0],
+        2e-3 * wanted, "independent program", "scipy.integrate.solve_ivp, all in one system",
+    )  # fmt: skip
 
 
 @needs_compiled_kernels

@@ -6,6 +6,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+from conformance import conforms
 from paper_structures import FLAT, building, known, podium, yielding
 from scipy.linalg import eigh
 
@@ -23,12 +24,18 @@ SIZES += [(50, FLAT), (50, 0.5), (100, 1.5)]
 
 @pytest.mark.parametrize(("storeys", "rho"), SIZES)
 def test_frequencies_and_damping_belong_to_their_eigenvalues(storeys, rho):
-    for modes in modal(podium(storeys, 0.15, rho)).uplifted.values():
+    for name, modes in modal(podium(storeys, 0.15, rho)).uplifted.items():
         first, second = modes.eigenvalues[2::2], modes.eigenvalues[3::2]
         products = np.sqrt((first * second).real)
-        assert modes.frequencies == pytest.approx(products, rel=1e-9)
+        conforms(
+            "modes", f"frequencies, {name}", products, modes.frequencies, 1e-9 * products,
+            "identity", "product of a pair of eigenvalues",
+        )  # fmt: skip
         sums = -(first + second).real / (2.0 * products)
-        assert modes.damping == pytest.approx(sums, rel=1e-7)
+        conforms(
+            "modes", f"damping, {name}", sums, modes.damping, 1e-7 * sums,
+            "identity", "sum of a pair of eigenvalues",
+        )  # fmt: skip
         assert np.all(modes.damping > 0.0)
         assert np.all(np.diff(modes.frequencies) > 0.0)
         for value in modes.eigenvalues[2:][modes.eigenvalues[2:].imag > 0.0]:
@@ -105,14 +112,20 @@ def test_one_storey_in_closed_form(tan_alpha, period):
     structure = podium(1, tan_alpha, 0.5, superstructure=building(1, period))
     modes = known(modal(structure).rolling)
     total, a = structure.superstructure_mass, structure.bearing.alpha
-    for found, B, C in (
-        (modes, math.sin(a), math.cos(a)),
-        (known(modes.first_order), a, 1.0),
+    for order, found, B, C in (
+        ("exact", modes, math.sin(a), math.cos(a)),
+        ("first order", known(modes.first_order), a, 1.0),
     ):
         base = structure.columns_mass / 3.0 + structure.cap_beam_mass + total * B**2
         factor = math.sqrt(1.0 + C**2 * total / base)
-        assert found.frequency_ratio[0] == pytest.approx(factor, rel=1e-7)
-        assert found.damping_ratio[0] == pytest.approx(factor, rel=1e-7)
+        for name, ratios in (
+            ("omega_u/omega_0", found.frequency_ratio),
+            ("xi_u/xi_0", found.damping_ratio),
+        ):
+            conforms(
+                "modes", f"{name}, one storey, {order}", factor, ratios[0], 1e-7 * factor,
+                "closed form", "sqrt(1 + C^2 M_tot/(N m_c Io/4 + m_b + M_tot B^2))",
+            )  # fmt: skip
 
 
 @pytest.mark.parametrize("storeys", [0, 1, 6, 100])
@@ -133,8 +146,14 @@ def test_a_rigid_frame_has_only_its_own_mode():
         modes = known(state.first_order)
         assert len(modes.frequencies) == 0
         p = structure.rigid_frequency_parameter * math.sqrt(abs(kappa))
-        assert modes.frequency_parameter == pytest.approx(p, rel=1e-12)
-        assert modes.frequency_parameter_rigid == pytest.approx(p, rel=1e-12)
+        for name, found in (
+            ("p_ext", modes.frequency_parameter),
+            ("rigid estimate", modes.frequency_parameter_rigid),
+        ):
+            conforms(
+                "modes", f"{name} [rad/s], rigid frame, kappa {kappa:g}", p, found,
+                1e-12 * p, "closed form", "p sqrt(|kappa|)",
+            )  # fmt: skip
         squares = modes.eigenvalues**2
         assert squares.real == pytest.approx([-kappa / abs(kappa) * p**2] * 2, rel=1e-12)
     assert modal(podium(0)).fixed_base is None
@@ -174,12 +193,18 @@ def test_the_podiums_own_mode_in_words():
     """
     rolling, falling = modal(podium(0, 0.15, 1.0)).uplifted.values()
     swings, falls = known(rolling.first_order), known(falling.first_order)
-    assert swings.own_period == pytest.approx(2.0 * math.pi / 1.82253, rel=1e-5)
+    conforms(
+        "modes", "own period [s], rigid frame, rho 1", 2.0 * math.pi / 1.82253,
+        swings.own_period, 3.5e-5, "hand calculation", "p = 1.82253 rad/s",
+    )  # fmt: skip
     assert (swings.own_growth_time, swings.own_motion) == (
         None,
         "swings with T = 3.448 s",
     )
-    assert falls.own_growth_time == pytest.approx(1.0 / 1.82253, rel=1e-5)
+    conforms(
+        "modes", "growth time [s], rigid frame, rocking", 1.0 / 1.82253,
+        falls.own_growth_time, 5.5e-6, "hand calculation", "p = 1.82253 rad/s",
+    )  # fmt: skip
     assert (falls.own_period, falls.own_motion) == (None, "diverges, e-fold in 0.5487 s")
     for storeys, damper in product((0, 1, 5, 12), (0.0, 5.0, 5e5, 5e7)):
         devices = (ViscousDamper(damper),) if damper else ()
@@ -198,7 +223,11 @@ def test_the_storey_that_yields_first_in_a_mode():
     above = yielding(elastic, 1e6)
     structure = podium(3, 0.15, 0.5, superstructure=above)
     found = modal(structure).first_yield
-    assert found["full_contact"]["base_shear"] == pytest.approx(1e6, rel=1e-9)
+    conforms(
+        "modes", "base shear at first yield [N], full contact", 1e6,
+        found["full_contact"]["base_shear"], 1e-3,
+        "identity", "strengths as the shears of the first mode",
+    )  # fmt: skip
     M, _, K = linearised_matrices(
         structure, uplifted_state(structure.bearing, rolling=True)
     )
@@ -207,7 +236,11 @@ def test_the_storey_that_yields_first_in_a_mode():
     shears = above.stiffnesses * np.diff(vectors[1:, 1], prepend=height * vectors[0, 1])
     base_shears = np.abs(shears[0] / shears) * known(above.strengths)
     rolling = found["rolling"]
-    assert rolling["base_shear"] == pytest.approx(base_shears.min(), rel=1e-9)
+    conforms(
+        "modes", "base shear at first yield [N], rolling", base_shears.min(),
+        rolling["base_shear"], 1e-9 * base_shears.min(),
+        "independent program", "scipy.linalg.eigh, undamped",
+    )  # fmt: skip
     assert rolling["storey"] == base_shears.argmin() + 1 == 3
     assert "first_yield" in modal(structure).results()
     assert "first_yield" not in modal(podium(3)).results()

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from conformance import conforms
 from oracles.devices import Equipment
 from oracles.devices import Tendon as OracleTendon
 from oracles.storey_lagrangian import Contact, StoreyLagrangian
@@ -89,10 +90,16 @@ def test_eigenvalues_are_those_of_the_jacobian(shape, storeys, devices):
         expected = np.linalg.eigvals(jacobian(structure, rolling=name == "rolling"))
         # differences round; a double zero is found to the root of that only
         zero = 1e-5 if modes.frequency_parameter == 0.0 else 0.0
-        for value in modes.eigenvalues:
-            assert (
-                np.min(np.abs(expected - value)) < 1e-6 * np.max(np.abs(expected)) + zero
-            )
+        near = [expected[np.argmin(np.abs(expected - v))] for v in modes.eigenvalues]
+        within = 1e-6 * np.max(np.abs(expected)) + zero
+        for part, wanted, found in (
+            ("real", np.real(near), modes.eigenvalues.real),
+            ("imaginary", np.imag(near), modes.eigenvalues.imag),
+        ):
+            conforms(
+                "modes", f"{part} parts of the eigenvalues [1/s], {name}", wanted, found,
+                within, "independent program", "Jacobian of Lagrange's equations",
+            )  # fmt: skip
 
 
 @pytest.mark.evidence("floors on vertical springs", "exact")
@@ -130,10 +137,13 @@ def test_springs_in_tilt_drifts_and_lifts(storeys, shape):
         expected = np.linalg.eigvals(np.vstack([unmoved, turned]))
         assert len(modes.eigenvalues) == len(expected) == 4 * n + 2
         zero = 1e-5 if modes.frequency_parameter == 0.0 else 0.0
-        for value in modes.eigenvalues:
-            assert (
-                np.min(np.abs(expected - value)) < 1e-9 * np.max(np.abs(expected)) + zero
-            )
+        near = [expected[np.argmin(np.abs(expected - v))] for v in modes.eigenvalues]
+        conforms(
+            "floors on vertical springs", f"distance of eigenvalues [1/s], {name}",
+            np.zeros(len(near)), np.abs(modes.eigenvalues - near),
+            1e-9 * np.max(np.abs(expected)) + zero,
+            "closed form", "second derivatives of the energies",
+        )  # fmt: skip
         assert len(modes.frequencies) == len(modes.vertical_frequencies) == n
         # a beam that is lifted with the floors is stiffer than one that stands
         assert np.all(modes.vertical_frequencies > 0.99 * np.sqrt(squares))
@@ -183,5 +193,11 @@ def test_a_rigid_block_falls_as_its_pendulum_does():
         p = structure.rigid_frequency_parameter
         modes = modal(structure).rocking
         expected = p * math.sqrt(math.cos(math.atan(tan_alpha)))
-        assert modes.frequency_parameter == pytest.approx(expected, rel=1e-12)
-        assert modes.frequency_parameter_rigid == pytest.approx(expected, rel=1e-12)
+        for name, found in (
+            ("p_ext", modes.frequency_parameter),
+            ("rigid estimate", modes.frequency_parameter_rigid),
+        ):
+            conforms(
+                "modes", f"{name} [rad/s], block, tan(alpha) {tan_alpha:g}", expected, found,
+                1e-12 * expected, "closed form", "p sqrt(cos(alpha)) of a pendulum",
+            )  # fmt: skip

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from conformance import conforms
 from hypothesis import given
 from hypothesis import strategies as st
 from paper_structures import FLAT, building, known, podium, yielding
@@ -19,7 +20,10 @@ def test_storey_curve(storeys, rho):
     curve, W = result.curve, structure.weight
     assert curve.rotation[0] == curve.displacement[0] == curve.lift[0] == 0.0
     assert curve.force[0] == pytest.approx(result.uplift_force, rel=1e-13)
-    assert curve.force[0] == pytest.approx(W * 0.15, rel=1e-13)
+    conforms(
+        "pushover", "uplift force [N]", W * 0.15, curve.force[0], 1e-13 * W,
+        "closed form", "W tan(alpha)",
+    )  # fmt: skip
     assert curve.rotation[-1] == result.critical_rotation == structure.critical_rotation
     assert curve.displacement[-1] == result.critical_displacement
     assert abs(curve.force[-1]) < 1e-12 * W
@@ -27,7 +31,11 @@ def test_storey_curve(storeys, rho):
     assert np.all(curve.force[:-1] > 0.0)
     # int F du_b = W v_b; trapezoids over 400 parts: 1/12/400^2 of a smooth curve
     work = np.trapezoid(curve.force, curve.displacement)
-    assert work == pytest.approx(W * curve.lift[-1], rel=2e-5)
+    raised = W * curve.lift[-1]
+    conforms(
+        "pushover", "work up to theta_cr [J]", raised, work, 2e-5 * raised,
+        "identity", "integral of F du_b = W v_b",
+    )  # fmt: skip
     beta = structure.bearing.beta
     rolls_then_rocks = 0.0 < beta < structure.critical_rotation
     assert len(curve.rotation) == (402 if rolls_then_rocks else 401)
@@ -48,7 +56,10 @@ def test_figure_1_of_the_paper():
         )
         slopes.append(result.initial_stiffness / (structure.weight / 3.0))
     assert np.all(np.diff(slopes) > 0.0)
-    assert slopes == pytest.approx([-1.0, -0.4, 0.0, 0.4, 2.0], abs=0.05)  # (2 rho - 1)
+    conforms(
+        "pushover", "slopes after uplift over W/2R, five rho",
+        [-1.0, -0.4, 0.0, 0.4, 2.0], slopes, 0.05, "published", "2 rho - 1, Figure 1c",
+    )  # fmt: skip
 
 
 @pytest.mark.evidence("pushover", "exact")
@@ -67,7 +78,11 @@ def test_capacity_is_elastic_to_uplift_and_the_storey_beyond(pattern):
         structure.uplift_force, rel=1e-13
     )
     uplift = structure.uplift_force * sway
-    assert capacity.roof_displacement_at_uplift == pytest.approx(uplift, rel=1e-12)
+    conforms(
+        "pushover", "roof displacement at uplift [m]", uplift,
+        capacity.roof_displacement_at_uplift, 1e-12 * uplift,
+        "hand calculation", "storeys in series under the forces",
+    )  # fmt: skip
     assert capacity.roof_displacement[1] == pytest.approx(uplift, rel=1e-12)
     # beyond, it is carried along and unloads with the storey
     assert capacity.sum_of_floor_forces[1:].tolist() == result.curve.force.tolist()
@@ -115,9 +130,14 @@ def test_storeys_that_yield_bend_the_curve(pattern, rho, ratio):
         curve.roof_displacement - curve.cap_beam_displacement,
     )
     highest = int(pushed.argmax())
-    for point in range(1, highest + 1, 97):
-        wanted = event_to_event(above, curve.forces, float(pushed[point]))
-        assert own[point] == pytest.approx(wanted, rel=1e-10)
+    points = range(1, highest + 1, 97)
+    wanted = np.array(
+        [event_to_event(above, curve.forces, float(pushed[p])) for p in points]
+    )
+    conforms(
+        "pushover", "roof over the beam of storeys that yield [m]", wanted, own[points],
+        1e-10 * wanted, "closed form", "tangent stiffness from event to event",
+    )  # fmt: skip
     sway = float(np.linalg.solve(above.stiffness_matrix, curve.forces)[-1])
     fallen, most = (
         pushed[highest] - pushed[highest:],
@@ -174,9 +194,11 @@ def test_patterns():
     assert load_pattern(without, "triangular") == pytest.approx(counted / counted.sum())
     # inertia forces of free vibration in the first mode bend the building into that mode
     bent = np.linalg.solve(above.stiffness_matrix, load_pattern(above, "first_mode"))
-    assert bent / bent[-1] == pytest.approx(
-        above.shapes[:, 0] / above.shapes[-1, 0], rel=1e-12
-    )
+    expected = above.shapes[:, 0] / above.shapes[-1, 0]
+    conforms(
+        "pushover", "building bent by the pattern of its first mode", expected,
+        bent / bent[-1], 1e-12 * expected, "identity", "inertia forces of free vibration",
+    )  # fmt: skip
     assert load_pattern(above, [0.0, 0.0, 5.0]).tolist() == [0.0, 0.0, 1.0]
 
 

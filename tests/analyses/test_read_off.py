@@ -10,6 +10,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from conformance import conforms
 from paper_structures import ground, known, needs_compiled_kernels, podium
 from scipy.signal import lsim
 
@@ -43,6 +44,13 @@ def motion(parts=1, amplitude=5.0):
     return ground(np.interp(at, np.arange(len(t)), values), 0.02 / parts)
 
 
+def in_balance(quantity, expected, found, within):
+    conforms(
+        "forces in columns, friction", quantity, expected, found, within,
+        "identity", "equilibrium of columns, beam and floors",
+    )  # fmt: skip
+
+
 @pytest.mark.evidence("forces in columns, friction", "exact")
 @pytest.mark.parametrize("force", [3e5, 1.5e6])
 def test_columns_with_friction_dampers_are_in_equilibrium(force):
@@ -56,7 +64,8 @@ def test_columns_with_friction_dampers_are_in_equilibrium(force):
     assert P.max() <= force
     taking = 1e-6 * force < P
     assert taking.any()
-    assert np.abs(F[still][taking]) / N[still][taking] == pytest.approx(TAN, rel=1e-9)
+    ratio = np.abs(F[still][taking]) / N[still][taking]
+    in_balance("F/N while dampers act", np.full_like(ratio, TAN), ratio, 1e-9 * TAN)
     assert result.friction_demand < 1.08 * TAN  # the inertia of the columns
     assert result.max_column_shear < 1.08 * TAN * np.max(N)
 
@@ -213,9 +222,12 @@ def test_equipment_at_resonance_is_followed_beyond_the_history():
     equipment = lsim(([-1.0], [1.0, 0.1 * w, w * w]), floor, t)[1]
     for spectra in (isolated_floor_spectra, fixed_base_floor_spectra):
         found = known(spectra(result, np.array([period])))
-        assert found.displacement[0, 0] == pytest.approx(
-            np.max(np.abs(equipment)), rel=5e-3
-        )
+        most = np.max(np.abs(equipment))
+        conforms(
+            "floor spectra", f"Sd [m] at resonance, {spectra.__name__}", most,
+            found.displacement[0, 0], 5e-3 * most,
+            "independent program", "scipy.signal.lsim, building and equipment in series",
+        )  # fmt: skip
 
 
 def test_a_denser_trace_is_the_same_motion():
@@ -265,11 +277,11 @@ def test_outer_rows_balance_the_moment_of_the_building():
     lean = np.sign(t.rotation) * (arm + 0.5 * np.abs(t.cap_beam_displacement))
     N = t.normal_top
     outer = 0.5 * N[moving] + np.abs(moment[moving] + N[moving] * lean[moving]) / 12.0
-    assert known(result.axial).largest["top"] == pytest.approx(
-        outer.max() / 2.0, rel=2e-3
-    )
+    most = outer.max() / 2.0
+    found = known(result.axial).largest["top"]
+    in_balance("largest force of an outer column [N]", most, found, 2e-3 * most)
     ratio = np.max(np.abs(inertia) / (N * 6.0))
-    assert result.overturning_ratio == pytest.approx(ratio, rel=1e-9)
+    in_balance("overturning ratio", ratio, result.overturning_ratio, 1e-9 * ratio)
     # on a third of the width an outer row lifts off where the moment exceeds N L/2: in a warning
     lifts = t.time[moving & (np.abs(moment + N * lean) > 2.0 * N)]
     narrow = time_history(with_plan(3, (0.0, 4.0), None), motion(), SHORT)
@@ -299,8 +311,11 @@ def test_an_outer_column_leans_on_the_beam_with_what_it_carries_more(storeys):
         for F in (t.shear_top, t.shear_bottom)
         for side in (-1.0, 1.0)
     ]
-    assert result.max_column_shear == pytest.approx(np.max(of_columns), rel=1e-3)
-    assert known(result.axial).shear == pytest.approx(np.max(of_columns), rel=1e-9)
+    most = np.max(of_columns)
+    in_balance(
+        "largest shear of a column [N]", most, result.max_column_shear, 1e-3 * most
+    )
+    in_balance("its shear at samples [N]", most, known(result.axial).shear, 1e-9 * most)
     mean = time_history(replace(of, rows=()), motion(), SHORT)
     assert result.max_column_shear > 1.001 * mean.max_column_shear
     assert (mean.shear_is_of, result.shear_is_of) == (
@@ -334,10 +349,13 @@ def test_rows_at_unequal_distances_are_in_equilibrium_at_every_instant(rows):
     of_rows = middle[:, None] + slope[:, None] * x
     three = replace(with_plan(2, rows, None), columns=3)
     axial = known(time_history(three, motion(), SHORT).axial)
-    close = {"rel": 1e-9, "abs": 1e-9 * float(t.normal_top.max())}
-    assert axial.heaviest["top"] == pytest.approx(of_rows.max(axis=1), **close)
-    assert axial.largest["top"] == pytest.approx(of_rows.max(), **close)
-    assert axial.least["top"] == pytest.approx(of_rows.min(), **close)
+    close = 1e-9 * float(t.normal_top.max())
+    for name, expected, found in (
+        ("forces of the heaviest row", of_rows.max(axis=1), axial.heaviest["top"]),
+        ("largest force of a row", of_rows.max(), axial.largest["top"]),
+        ("least force of a row", of_rows.min(), axial.least["top"]),
+    ):
+        in_balance(f"{name} [N], three rows", expected, found, close)
     lifts = t.time[(of_rows < 0.0).any(axis=1)]
     assert axial.lift_off == (pytest.approx(lifts[0]) if len(lifts) else None)
 
@@ -381,7 +399,8 @@ def test_corner_columns_carry_what_a_grid_needs_for_the_moments_of_a_plane_motio
     rows = np.flatnonzero(~in_shocks(grid, denser_trace(pair, 5e-4)))
     rows = rows[rows < len(corner)]
     assert len(rows) > 0.9 * len(corner)
-    assert found[rows] == pytest.approx(corner[rows], abs=1e-5 * float(corner.max()))
+    within = 1e-5 * float(corner.max())
+    in_balance("forces of corner columns [N]", corner[rows], found[rows], within)
 
 
 @pytest.mark.evidence("forces in columns, friction", "exact")
@@ -400,7 +419,8 @@ def test_floors_on_springs_press_with_their_own_forces():
         smooth[max(at - 2, 0) : at + 2] = False
     assert smooth.sum() > 0.9 * len(smooth)
     expected = structure.cap_beam_mass * (g + rises[smooth])
-    assert beam[smooth] == pytest.approx(expected, abs=2e-4 * structure.weight)
+    within = 2e-4 * structure.weight
+    in_balance("force of the beam [N]", expected, beam[smooth], within)
     assert np.max(floors) > 1.2 * g * structure.superstructure_mass
     axial = known(result.axial)
     assert 4.0 * axial.largest["top"] == pytest.approx(trace.normal_top.max(), rel=1e-9)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conformance import conforms
 from paper_structures import (
     building,
     known,
@@ -53,20 +54,29 @@ def pair():
     return time_history(both, MotionComponents(RECORD.scaled(0.6), y=OTHER), SETTINGS)
 
 
+def of_samples(quantity, expected, found, within):
+    conforms(
+        "storeys that yield", quantity, expected, found, within,
+        "identity", "extremes and sums of the samples",
+    )  # fmt: skip
+
+
 def test_largest_demands_are_those_of_the_samples(result):
     """Which are dense: within steps there is little more."""
     trace, plastic = result.trace, known(result.trace.plastic_drifts)
     largest = np.abs(trace.drifts).max(axis=0)
-    assert result.ductilities == pytest.approx(largest * K / F, rel=1e-3)
+    mu = largest * K / F
+    of_samples("ductilities", mu, result.ductilities, 1e-3 * mu)
     assert result.max_drifts == pytest.approx(largest, rel=1e-3)
     assert trace.storey_shears == pytest.approx(K * (trace.drifts - plastic), abs=1e-6)
     assert result.storey_shears == pytest.approx(
         np.abs(trace.storey_shears).max(axis=0), rel=1e-3
     )
-    assert result.plastic_drifts == pytest.approx(np.ptp(plastic, axis=0), rel=1e-9)
-    assert result.residual_drifts == pytest.approx(np.abs(plastic[-1]), rel=1e-9)
+    swing, last = np.ptp(plastic, axis=0), np.abs(plastic[-1])
+    of_samples("plastic drifts [m]", swing, result.plastic_drifts, 1e-9 * swing)
+    of_samples("residual drifts [m]", last, result.residual_drifts, 1e-9 * last)
     path = np.abs(np.diff(plastic, axis=0)).sum(axis=0)
-    assert result.energies_yielded == pytest.approx(F * path, rel=1e-2)
+    of_samples("energies yielded [J]", F * path, result.energies_yielded, 1e-2 * F * path)
     begins = [float(trace.time[np.flatnonzero(each)[0]]) for each in plastic.T]
     assert np.all(np.abs(result.first_yields - begins) <= RECORD.dt)
     assert result.ductility == result.ductilities.max() > 1.5

@@ -5,12 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from conformance import conforms
 from hypothesis import given
 from hypothesis import strategies as st
 from paper_structures import FLAT
 from scipy.optimize import brentq
-from shown_commands import VERIFICATION, table
 
+from rpscli.analyses.known_systems import SLENDERNESSES, geometry_numbers, shape
 from rpscli.model.bearing import Bearing
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.laws import geometry
@@ -32,20 +33,7 @@ GEOMETRIES = [
 ]
 
 
-def test_the_printed_digits_are_those_of_the_verification():
-    shown = table(VERIFICATION, "Geometry for `R = 1.5 m`")[1:]
-    digits = {str(number) for row in GEOMETRIES for number in row[2 if row[1] else 4 :]}
-    numbers = {
-        number for row in shown for cell in row[2:] for number in cell.split(" / ")
-    }
-    assert numbers == {number.removeprefix("0") for number in digits} | {"0", "alpha"}
-
-
-def printed(digits, units=0.5):
-    """A printed number, within half of its last digit, or so many of them."""
-    return pytest.approx(
-        float(digits), abs=units * 10.0 ** -len(digits.partition(".")[2])
-    )
+NUMBERS = dict(geometry_numbers())
 
 
 @pytest.mark.evidence("geometry of columns", "published")
@@ -53,15 +41,38 @@ def printed(digits, units=0.5):
     ("tan", "rho", "beta", "critical", "displacement", "lift"), GEOMETRIES
 )
 def test_table_of_geometry(tan, rho, beta, critical, displacement, lift):
-    bearing = Bearing(1.5, tan, 2.0 * tan, rho)
-    _, u, v = PodiumStructure(bearing, 2e4, 2e5).path(
-        np.array([bearing.critical_rotation])
-    )
-    assert bearing.beta == printed(beta)
-    assert bearing.critical_rotation == printed(critical)
-    assert u[0] == printed(displacement)
-    # .098495 is printed as .099, rounded twice
-    assert v[0] == printed(lift, 0.51)
+    printed = {
+        "beta": beta,
+        "theta_cr": critical,
+        "u_b at theta_cr [m]": displacement,
+        "v_b at theta_cr [m]": lift,
+    }
+    for quantity, digits in printed.items():
+        if quantity == "beta" and not rho:
+            continue
+        name = f"{quantity}, {shape(tan, rho)}"
+        # half of the last digit; .098495 is printed as .099, rounded twice
+        within = 0.51 * 10.0 ** -len(digits.partition(".")[2])
+        conforms(
+            "geometry of columns", name, float(digits), NUMBERS[name], within,
+            "published", "table of the geometry of the paper's columns",
+        )  # fmt: skip
+
+
+@pytest.mark.evidence("geometry of columns", "exact")
+@pytest.mark.parametrize("tan", SLENDERNESSES)
+def test_limits_of_overturning_while_rolling(tan):
+    """Where tan(beta) (1 - 2 rho) is tan(alpha), with sin(beta) = tan(alpha)/(2 rho)."""
+    alone = brentq(
+        lambda rho: tan / (2.0 * rho) * (1.0 - 2.0 * rho)
+        - tan * math.sqrt(1.0 - (tan / (2.0 * rho)) ** 2),
+        0.6 * tan, 0.5, xtol=1e-15,
+    )  # fmt: skip
+    name = f"rho_cr, tan(alpha) {tan:.2f}"
+    conforms(
+        "geometry of columns", name, alone, NUMBERS[name], 1e-10 * alone,
+        "closed form", "root of tan(beta) (1 - 2 rho) = tan(alpha)",
+    )  # fmt: skip
 
 
 slopes = st.floats(0.01, 0.5)

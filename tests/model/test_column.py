@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from conformance import conforms
 from paper_structures import known
 from scipy.integrate import quad
 
@@ -60,8 +61,17 @@ def test_forces_along_a_column(number):
     lever, rise = B + r * math.sin(y), r * (1.0 - math.cos(y))
     state = ColumnState(side, x, rate, lever, rise, F_b, N_b, F_t, N_t)
     found = state.section_forces(bearing, 2e4, np.linspace(0.0, 2.0, 5) * H)
-    for values, other in zip(found, wanted, strict=True):
-        assert values == pytest.approx(other, rel=1e-6)
+    for name, values, other in zip("PQM", found, wanted, strict=True):
+        expected = np.array(other)
+        of_column(f"{name} at five places, state {number + 1}", expected, values)
+
+
+def of_column(quantity, expected, found):
+    """A number of another program, with eight digits."""
+    conforms(
+        "forces in columns, friction", quantity, expected, found, 1e-6 * np.abs(expected),
+        "independent program", "integrator of a column, and Hertz by quadrature",
+    )  # fmt: skip
 
 
 @pytest.mark.evidence("forces in columns, friction", "program")
@@ -79,9 +89,9 @@ def test_pressure_on_points_and_lines(design, force, radii, largest, widths):
     x = 0.02
     bearing = arcs(radii[0], (radii[1] - radii[0]) * math.sin(x))
     found = design.pressed(bearing, np.array(x), np.array(force))
-    assert [float(value) for value in found] == pytest.approx(
-        [largest, *widths], rel=1e-6
-    )
+    assert math.isfinite(found[2]) == math.isfinite(widths[1])
+    of_column("largest pressure [Pa]", largest, float(found[0]))
+    of_column("half width of the contact [m]", widths[0], float(found[1]))
 
 
 @pytest.mark.evidence("forces in columns, friction", "exact")
@@ -90,7 +100,10 @@ def test_an_ellipse_between_a_circle_and_a_line():
     N, r, E = np.array(525e3), 1.483, ROUND.contact_modulus
     largest, *_ = ROUND.pressed(arcs(r, 1e-12), np.array(0.1), N)
     sphere = (6.0 * N * E**2 / (math.pi**3 * r**2)) ** (1.0 / 3.0)
-    assert largest == pytest.approx(sphere, rel=1e-9)
+    conforms(
+        "forces in columns, friction", "largest pressure of a sphere [Pa]", sphere, largest,
+        1e-9 * sphere, "closed form", "Hertz: (6 N E^2/(pi^3 r^2))^(1/3)",
+    )  # fmt: skip
     assert ROUND.pressed(arcs(r, 0.0), np.array(0.0), N)[0] == pytest.approx(
         sphere, rel=1e-14
     )
@@ -105,9 +118,10 @@ def test_an_ellipse_between_a_circle_and_a_line():
 def test_edges_that_crush():
     flat = Bearing(math.hypot(1.5, 0.2225), 0.2225 / 1.5, 0.2225 / 1.5, 0.0)
     strip = replace(SQUARE, edge_length=0.445).crushed(flat, 525e3)
-    assert strip == pytest.approx((0.047191011, 0.023595506), rel=1e-6)
-    assert ROUND.crushed(flat, 525e3) == pytest.approx(
-        (0.085764436, 0.050820164), rel=1e-6
+    of_column("crushed depth and lever of a strip [m]", (0.047191011, 0.023595506), strip)
+    circle = ROUND.crushed(flat, 525e3)
+    of_column(
+        "crushed depth and lever of a circle [m]", (0.085764436, 0.050820164), circle
     )
     assert ROUND.crushed(flat, -1.0) == (0.0, 0.0)
     whole = math.pi * 0.2225**2 * 25e6
@@ -214,16 +228,25 @@ def test_pressure_in_a_point_carries_the_force_and_fits_the_surfaces(width):
     p_0, a, b = map(float, design.pressed(bearing, np.array(tilt), np.array(N)))
     rho = np.linspace(0.0, 1.0, 20001)
     carried = 2.0 * math.pi * a * b * p_0 * np.trapezoid(rho * np.sqrt(1.0 - rho**2), rho)
-    assert carried == pytest.approx(N, rel=1e-5)  # of the sum, whose end has no slope
+    conforms(
+        "forces in columns, friction", "force that pressures of an ellipse carry [N]", N,
+        carried, 1e-5 * N,  # of the sum, whose end has no slope
+        "identity", "sum of the pressures",
+    )  # fmt: skip
     found = design.contact(bearing, tilt)
     E = design.contact_modulus
     middle = sunk(p_0, a, b, 0.0, 0.0)
     along = (middle - sunk(p_0, a, b, 0.6 * a, 0.0)) / E
     across = (middle - sunk(p_0, a, b, 0.0, 0.6 * b)) / E
-    assert along == pytest.approx((0.6 * a) ** 2 / (2.0 * found.radius), rel=1e-9)
-    assert across == pytest.approx(
-        (0.6 * b) ** 2 / (2.0 * known(found.radius_across)), rel=1e-9
-    )
+    for name, mine, size, radius in (
+        ("along", along, a, found.radius),
+        ("across", across, b, known(found.radius_across)),
+    ):
+        expected = (0.6 * size) ** 2 / (2.0 * radius)
+        conforms(
+            "forces in columns, friction", f"gap closed {name} the motion [m]", expected,
+            mine, 1e-9 * expected, "identity", "Boussinesq's half-space under the pressures",
+        )  # fmt: skip
 
 
 @pytest.mark.evidence("forces in columns, friction", "exact")

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from conformance import conforms
 from oracles.devices import Equipment
 from oracles.storey_lagrangian import Contact, StoreyLagrangian
 from paper_structures import (
@@ -67,21 +68,30 @@ def test_both_branches_of_the_storey_curve(rho):
     returning = Equipment(motion, oracle_devices(structure))
     returning.unload(end, rolling=end < motion.beta)
     assert max(returning.plastic) > 0.0
-    for index, x in enumerate(curve.rotation):
+    wanted = []
+    for x in curve.rotation:
         contact = Contact(1, rolling=bool(x < motion.beta))
         shift, slope, _ = motion.cap_beam(float(x), rolling=contact.rolling)
         weight = motion.lifted_mass * structure.gravity * slope.imag
         gear = Equipment(motion, oracle_devices(structure))
         gear.unload(float(x), rolling=contact.rolling)
         active, held = gear.at_rest(contact, float(x))
-        assert curve.displacement[index] == pytest.approx(shift.real, abs=1e-14)
-        assert curve.force[index] == pytest.approx(
-            (weight - active + held) / slope.real, rel=1e-12
-        )
+        out = (weight - active + held) / slope.real
         # on the way back tendons are longer by what they yielded; slack if nothing is left
         active, held = returning.at_rest(contact, float(x))
         back = (weight - active - held) / slope.real
-        assert curve.unloading_force[index] == pytest.approx(back, rel=1e-11)
+        wanted.append((shift.real, out, back))
+    moved, out, back = np.transpose(wanted)
+    for name, expected, found, within in (
+        ("u_b [m]", moved, curve.displacement, 1e-14),
+        ("force, out [N]", out, curve.force, 1e-12 * np.abs(out)),
+        ("force, back [N]", back, curve.unloading_force, 1e-11 * np.abs(back)),
+    ):
+        conforms(
+            "devices", f"{name}, seven devices, {'flat' if rho == FLAT else f'rho {rho}'}",
+            expected, found, within,
+            "independent program", "second integrator's forces at rest",
+        )  # fmt: skip
 
 
 @pytest.mark.parametrize("rho", [FLAT, 0.5, 1.5])
@@ -91,15 +101,19 @@ def test_uplift_force_and_the_stiffness_after_it(rho):
     bearing = structure.bearing
     tan, H = bearing.slenderness, bearing.half_height
     by_hand = (structure.weight + 6 * 4e4) * tan + 1.2e5 + structure.weight * 0.02 / H
-    assert found.uplift_force == pytest.approx(by_hand, rel=1e-12)
+    conforms(
+        "devices", "uplift force with seven devices [N]", by_hand, found.uplift_force,
+        1e-12 * by_hand, "hand calculation", "(W + 6 P) tan(alpha) + F_d + W f/H",
+    )  # fmt: skip
     assert uplift_force(structure) == pytest.approx(by_hand, rel=1e-12)
     path = pushover(structure, points=20_001).curve
     slope = np.diff(path.force[:3]) / np.diff(path.displacement[:3])
     # extrapolated to zero: a parabola through three points, 1e-4 of the curve
     size = structure.weight / (2.0 * bearing.semi_diagonal)
-    assert found.initial_stiffness == pytest.approx(
-        1.5 * slope[0] - 0.5 * slope[1], abs=1e-5 * size
-    )
+    conforms(
+        "devices", "stiffness after uplift [N/m]", 1.5 * slope[0] - 0.5 * slope[1],
+        found.initial_stiffness, 1e-5 * size, "identity", "slope of the curve, extrapolated",
+    )  # fmt: skip
 
 
 def test_without_devices_the_way_back_is_the_way_out():
@@ -117,12 +131,22 @@ def test_a_slender_storey_recentres_below_its_constant_force():
         assert found.recentres is comes_back
         # B = sin(alpha) cos(x), and C = cos(alpha) but for alpha x
         least = constant * math.cos(found.rotation)
-        assert found.largest_friction == pytest.approx(least, rel=1e-3)
+        conforms(
+            "devices", f"largest friction that recentres [N], share {share}", least,
+            found.largest_friction, 1e-3 * least, "closed form", "W tan(alpha) cos(theta)",
+        )  # fmt: skip
     lever = base.bearing.half_width
     assert returns(replace(base, devices=(RollingResistance(0.98 * lever),)))[0].recentres
     assert not returns(replace(base, devices=(RollingResistance(1.01 * lever),)))[
         0
     ].recentres
+
+
+def by_hand(quantity, expected, found):
+    conforms(
+        "devices", quantity, expected, found, 1e-12 * expected,
+        "hand calculation", "geometry of flat ends",
+    )  # fmt: skip
 
 
 def test_consequences_by_hand():
@@ -132,20 +156,24 @@ def test_consequences_by_hand():
     stop, tendon, viscous = device_consequences(structure)["devices"]
     x, bearing = stop["met_rotation"], structure.bearing
     alpha, R = bearing.alpha, bearing.semi_diagonal
-    assert 2.0 * R * (math.sin(alpha) - math.sin(alpha - x)) == pytest.approx(
-        0.1, rel=1e-12
-    )
+    by_hand(
+        "displacement at which a stop is met [m]",
+        0.1, 2.0 * R * (math.sin(alpha) - math.sin(alpha - x)),
+    )  # fmt: skip
     assert stop["met_rotation_ratio"] == pytest.approx(x / structure.critical_rotation)
     stretch = 4.0 * bearing.half_width * math.sin(tendon["yield_rotation"] / 2.0)
-    assert stretch == pytest.approx(1e4 / 5e5, rel=1e-12)
-    assert tendon["uplift_share"] == pytest.approx(6 * 3e4 / structure.weight)
+    by_hand("elongation at which a tendon yields [m]", 1e4 / 5e5, stretch)
+    share = tendon["uplift_share"]
+    by_hand("share of tendons in the uplift force", 6 * 3e4 / structure.weight, share)
     plastic = (
         4.0 * bearing.half_width * math.sin(structure.critical_rotation / 2.0) - 0.02
     )
     left = max(0.0, 3e4 - 5e5 * plastic)
     assert tendon["prestress_after_critical"] == pytest.approx(left)
     speed = viscous["velocity_at_uplift_force"]
-    assert 4e4 * speed**2 == pytest.approx(structure.uplift_force)
+    by_hand(
+        "force of a damper at its velocity [N]", structure.uplift_force, 4e4 * speed**2
+    )
     far = equipped(FLAT, Stop(5.0, 1e6))
     assert device_consequences(far)["devices"][0]["met_rotation"] is None
 
@@ -172,7 +200,10 @@ def test_linearised_tendons_are_the_slope_of_their_moment(rolling):
     )
     # first order in alpha, of which e is one itself: 1e-3 of what prestress and stiffness add
     size = 6 * (3e4 / structure.bearing.semi_diagonal + 5e5 * 1e-6)
-    assert added == pytest.approx(slope, abs=3e-3 * size)
+    conforms(
+        "devices", "stiffness of tendons to first order [N/m]", slope, added, 3e-3 * size,
+        "independent program", "slope of the second integrator's moment",
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("c", [0.0, 2e5, 3e6])
@@ -183,9 +214,9 @@ def test_the_own_mode_of_a_rigid_frame_with_damper_and_tendons(c, stiffness):
     devices += (Tendon(0.0, stiffness),) if stiffness else ()
     structure = replace(podium(0, 0.15, 0.4), devices=devices, columns=6)
     result = modal(structure)
-    for kappa, angle, modes in (
-        (-0.2, structure.bearing.alpha, result.rolling),
-        (-1.0, structure.bearing.alpha_wedge, result.rocking),
+    for name, kappa, angle, modes in (
+        ("rolling", -0.2, structure.bearing.alpha, result.rolling),
+        ("rocking", -1.0, structure.bearing.alpha_wedge, result.rocking),
     ):
         assert modes is not None
         paper = known(modes.first_order)
@@ -194,7 +225,11 @@ def test_the_own_mode_of_a_rigid_frame_with_damper_and_tendons(c, stiffness):
         roots = np.sort_complex(np.roots([mass, c, spring]))
         assert np.sort_complex(paper.eigenvalues) == pytest.approx(roots, rel=1e-10)
         product = math.sqrt(abs(roots[0] * roots[1]))
-        assert paper.frequency_parameter == pytest.approx(product, rel=1e-10)
+        conforms(
+            "devices", f"p_ext [rad/s] with damper and tendons, {name}", product,
+            paper.frequency_parameter, 1e-10 * product,
+            "closed form", "roots of m z^2 + c z + k",
+        )  # fmt: skip
         assert paper.frequency_parameter_rigid == pytest.approx(product, rel=1e-10)
     assert result.left_out[0] == "friction"
 
@@ -217,13 +252,17 @@ def test_the_secant_period_of_flat_ends(ratio):
     R, g = structure.bearing.semi_diagonal, structure.gravity
     wanted = 2.0 * math.pi * math.sqrt(2.0 * R / g * ratio / (1.0 - ratio))
     # cos(alpha) and the like: 0.02^2.
-    assert secant_period(structure, rotation) == pytest.approx(wanted, rel=1e-3)
+    conforms(
+        "devices", "secant period [s], flat ends", wanted, secant_period(structure, rotation),
+        1e-3 * wanted, "closed form", "2 pi sqrt(2 R/g x/(1 - x))",
+    )  # fmt: skip
     # A spring of the secant stiffness beside it halves the square.
     stiffness = structure.restoring_mass * (2.0 * math.pi / wanted) ** 2
     held = replace(structure, devices=(Stop(0.0, stiffness),))
-    assert secant_period(held, rotation) == pytest.approx(
-        wanted / math.sqrt(2.0), rel=1e-3
-    )
+    conforms(
+        "devices", "secant period [s], flat ends and a spring", wanted / math.sqrt(2.0),
+        secant_period(held, rotation), 1e-3 * wanted, "closed form", "twice the stiffness",
+    )  # fmt: skip
 
 
 def on_spheres(friction):
@@ -240,8 +279,11 @@ def test_the_dead_band_of_ends_that_restore(friction):
     x = np.array([0.01])
     stiffness = float(restoring_force(structure, x)[0] / structure.path(x)[1][0])
     band = structure.devices[0].force / stiffness
-    for found in returns(structure):
-        assert found.dead_band == pytest.approx(band, rel=5e-3)
+    for number, found in enumerate(returns(structure)):
+        conforms(
+            "devices", f"dead band [m] of return {number + 1}", band, found.dead_band,
+            5e-3 * band, "closed form", "F/K on arcs",
+        )  # fmt: skip
         assert found.largest_friction == 0.0
         assert not found.recentres
 

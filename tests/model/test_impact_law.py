@@ -1,17 +1,22 @@
 """Restitution from momentum balances made anew with numbers, and what is refused."""
 
 import math
+from itertools import product
 
 import numpy as np
 import pytest
+from conformance import conforms
 from hypothesis import given
 from hypothesis import strategies as st
 from oracles.storey_lagrangian import StoreyLagrangian
 from paper_structures import FLAT, building, oracle_system, podium
 
+from rpscli.analyses.known_systems import LAWS, SLENDERNESSES, impact_numbers
 from rpscli.model.bearing import Bearing
 from rpscli.model.impact import ImpactLaw, flexible_restitution, rigid_restitution
 from rpscli.model.podium import PodiumStructure
+
+NUMBERS = dict(impact_numbers())
 
 bearings = st.builds(
     lambda tan_alpha, inertia: Bearing(1.3, tan_alpha, 2.0 * tan_alpha, 0.5, inertia),
@@ -62,6 +67,25 @@ def test_restitution_is_the_momentum_balance(bearing, gamma, eta):
     for law, floors_jump in ((rigid_restitution, True), (flexible_restitution, False)):
         expected = angular_momentum_ratio(bearing, gamma, eta, floors_jump=floors_jump)
         assert law(bearing, gamma, eta) == pytest.approx(expected, abs=1e-11)
+
+
+@pytest.mark.evidence("impact laws", "exact")
+@pytest.mark.parametrize("tan", SLENDERNESSES)
+def test_restitution_of_known_systems(tan):
+    """Of three columns, by the momentum balances and by Housner."""
+    bearing = Bearing(1.5, tan, 2.0 * tan, 0.5)
+    for law, eta in product(LAWS, (0.0, 1.0, 3.0, 9.0)):
+        name = f"e, {law}, tan(alpha) {tan:.2f}, eta {eta:g}"
+        expected = angular_momentum_ratio(bearing, 10.0, eta, floors_jump=law == "rigid")
+        conforms(
+            "impact laws", name, expected, NUMBERS[name], 1e-11,
+            "hand calculation", "momentum balance with unknown impulses, five equations",
+        )  # fmt: skip
+    name = f"e, rectangular block, tan(alpha) {tan:.2f}"
+    conforms(
+        "impact laws", name, 1.0 - 1.5 * math.sin(bearing.alpha) ** 2, NUMBERS[name], 1e-14,
+        "published", "Housner (1963)",
+    )  # fmt: skip
 
 
 @pytest.mark.evidence("impact laws", "published")

@@ -175,7 +175,7 @@ def _largest(values):
 
 
 def summary(rows, buildings=BUILDINGS):
-    """The table of VERIFICATION.md; values of both laws where there is a building.
+    """The table of CONFORMANCE.md; values of both laws where there is a building.
 
     Worst of the recorded motions, of those that did not overturn where maxima are compared.
     """

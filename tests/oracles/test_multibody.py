@@ -18,7 +18,7 @@ from paper_structures import (
     part,
     stillness,
 )
-from shown_commands import ROOT, VERIFICATION, of_blocks, run_in_shell, table
+from shown_commands import CONFORMANCE, ROOT, VERIFICATION, of_blocks, run_in_shell, table
 from two_components import frame, part_of_pair
 
 from rpscli.analyses.settings import TimeHistorySettings
@@ -104,7 +104,7 @@ def test_the_columns_part_under_a_beam_that_may_tilt_where_contacts_rebound():
 
 @pytest.mark.evidence("impact laws", "program")
 def test_blocks_of_the_table_of_the_verification(tmp_path):
-    """The command of its section 11, which takes twenty minutes for all rows."""
+    """The command of section 11 of the verification, which takes twenty minutes for all rows."""
     (line,) = (
         line for line in of_blocks(VERIFICATION) if "oracles.resolved_contact" in line
     )
@@ -114,7 +114,7 @@ def test_blocks_of_the_table_of_the_verification(tmp_path):
     printed = run_in_shell(f"cd {ROOT}; {line}").replace(
         "| block | 0 |", "| block | flat |"
     )
-    rows = re.findall(r"^\| block .*$", VERIFICATION.read_text("utf-8"), re.MULTILINE)
+    rows = re.findall(r"^\| block .*$", CONFORMANCE.read_text("utf-8"), re.MULTILINE)
     told, found = (
         [row.split("|")[2:7] for row in t] for t in (rows, printed.splitlines())
     )
@@ -242,7 +242,7 @@ def test_floors_on_vertical_springs(building, period, fema_record):
     carried = known(resolved.carried)
     assert force.max() == pytest.approx(np.max(carried), rel=2e-3)
     assert force.min() == pytest.approx(np.min(carried), abs=5e-3)
-    rows = table(VERIFICATION, "it warns of `N <= 0`")[1:]
+    rows = table(CONFORMANCE, "it warns of `N <= 0`")[1:]
     (cells,) = (cells for first, *cells in rows if float(first.split()[0]) == period)
     of = 2 * (building == "6")
     assert cells[of : of + 2] == [

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conformance import conforms
 from oracles.spatial_integrator import SpatialSimulation, simulate_pair
 from paper_structures import (
     ground,
@@ -112,12 +113,24 @@ def test_two_pulses(vertical, contact_time, largest):
     motion = pair(X, Y, STEP, upwards() if vertical else None)
     structure = frame(**THREE, contact_time=contact_time)
     fine = TimeHistorySettings(free_vibration=0.0, accuracy=3.0)
-    assert followed(structure, motion, fine).left.max_theta == pytest.approx(
-        largest, abs=1e-8
-    )
+    finest = followed(structure, motion, fine).left.max_theta
     usual = followed(structure, motion)
-    assert usual.left.max_theta == pytest.approx(largest, abs=1e-6)
+    for name, found, within in (
+        ("accuracy 3", finest, 1e-8),
+        ("default step", usual.left.max_theta, 1e-6),
+    ):
+        conforms(
+            "both components", f"largest tilt [rad], two pulses, {name}", largest, found,
+            within, "independent program", "Cartesian tilts, and polar coordinates",
+        )  # fmt: skip
     assert abs(usual.residual) < 2e-6
+
+
+def polar(quantity, expected, found, within):
+    conforms(
+        "both components", f"{quantity}, recorded pair", expected, found, within,
+        "independent program", "adaptive integrator in polar coordinates",
+    )  # fmt: skip
 
 
 @pytest.mark.evidence("both components", "program")
@@ -138,15 +151,14 @@ def test_recorded_pairs_of_another_program(row, fema_record):
     if given["recontact"]:
         assert history.recontacts.time[0] == pytest.approx(until, abs=1e-8)
         return
-    assert history.left.max_theta == pytest.approx(given["max"], abs=5e-7)
+    polar("largest tilt [rad]", given["max"], history.left.max_theta, 5e-7)
     if given["uplift"]:
-        assert history.of_kind(UPLIFT)[0].time == pytest.approx(
-            given["uplift"][0], abs=1e-9
-        )
+        begins = history.of_kind(UPLIFT)[0].time
+        polar("time of uplift [s]", given["uplift"][0], begins, 1e-9)
     if given["passes"]:
         assert len(history.passes) == given["passes"]
         lost = history.left.energy_passes / structure.columns_mass
-        assert lost == pytest.approx(given["lost"], rel=1e-6)
+        polar("loss of passes over m_c [J/kg]", given["lost"], lost, 1e-6 * given["lost"])
 
 
 def test_directions_are_exchanged_with_their_buildings():
@@ -281,13 +293,23 @@ def test_histories_of_another_program(name, fema_record):
     tilt = trace[:, 1] + 1j * trace[:, 2]
     # 1e-10 rad are found, 5e-8 where friction lets go, of which a motion begins with some velocity
     held = left.events[SLIDING] > 0
-    assert np.max(np.abs(history.tilt[rows] - tilt)) < (1e-7 if held else 3e-9)
-    assert left.max_theta == pytest.approx(
-        reference["max_tilt"], rel=1e-6 if held else 1e-7
-    )
+    capability = "compliant ends" if structure.bed else "both components"
+
+    def same(quantity, expected, found, within):
+        conforms(
+            capability, f"{quantity} of a history", expected, found, within,
+            "independent program", "momenta, complex-step derivatives, order 8",
+        )  # fmt: skip
+
+    far = 1e-7 if held else 3e-9
+    same("tilts towards x [rad]", tilt.real, history.tilt[rows].real, far)
+    same("tilts towards y [rad]", tilt.imag, history.tilt[rows].imag, far)
+    top = reference["max_tilt"]
+    same("largest tilt [rad]", top, left.max_theta, (1e-6 if held else 1e-7) * top)
     if structure.superstructure is not None:
         elastic = elastic_shear(structure, history)[: rows[-1] + 1].max()
-        assert elastic == pytest.approx(reference["base_shear"], rel=1e-6)
+        shear = reference["base_shear"]
+        same("base shear [N]", shear, elastic, 1e-6 * shear)
     spent = reference["energy"]
     for mine, theirs in (
         (left.energy_input, "input"),
@@ -297,9 +319,8 @@ def test_histories_of_another_program(name, fema_record):
         (left.energy_stored, "stored"),
         (left.device_energy.sum(), "devices"),
     ):
-        assert mine == pytest.approx(
-            spent[theirs], abs=(3e-7 if held else 1e-7) * spent["input"]
-        ), theirs
+        within = (3e-7 if held else 1e-7) * spent["input"]
+        same(f"energy {theirs} [J]", spent[theirs], mine, within)
     uplifts, reentries, sticks = reference["events"]
     begins_stuck = (
         left.events[STICKING] > 0 and structure.bearing.alpha * (not structure.bed) == 0

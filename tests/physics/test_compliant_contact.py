@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from conformance import conforms
 from oracles.compliant_storey import CompliantStorey, resolved
 from paper_structures import (
     building,
@@ -89,8 +90,14 @@ def test_a_release(rho, storeys, phi_u, loss, swing, shear):
     structure = of(contact)
     found = let_go(structure, 0.4 * structure.bearing.alpha, 2.4, 1e-3)
     ratio = -found.trace.rotation.min() / structure.bearing.alpha
-    assert ratio == pytest.approx(swing, abs=2e-5 if rho else 1e-5)
-    assert found.base_shear_ratio == pytest.approx(shear, abs=1e-3 if rho else 5e-4)
+    for name, expected, mine, within in (
+        ("first swing back [alpha]", swing, ratio, 2e-5 if rho else 1e-5),
+        ("V_b/V_st", shear, found.base_shear_ratio, 1e-3 if rho else 5e-4),
+    ):
+        conforms(
+            "compliant ends", f"{name} of a release", expected, mine, within,
+            "independent program", "another program and two integrators",
+        )  # fmt: skip
     # Steps may take 5e-6 of the energy of the fastest vibration, which impacts excite.
     assert abs(found.energy.residual) < 5e-6 * found.trace.energy_stored[0]
 
@@ -120,9 +127,11 @@ def test_full_contact_swings_with_the_period_that_was_asked_for():
     M, _, K = bedded(structure)
     omega2, _ = np.linalg.eig(np.linalg.solve(M, K))
     period = 2.0 * math.pi / math.sqrt(float(omega2.real.min()))
-    assert period / known(structure.superstructure).periods[0] == pytest.approx(
-        1.2, abs=1e-9
-    )
+    conforms(
+        "compliant ends", "period ratio in full contact",
+        1.2, period / known(structure.superstructure).periods[0], 1e-9,
+        "closed form", "eigenvalues of M and K written in the test",
+    )  # fmt: skip
 
 
 @pytest.mark.evidence("compliant ends", "program")
@@ -147,10 +156,15 @@ def test_a_second_integrator_agrees(kind, peak):
         settings = TimeHistorySettings(free_vibration=0.0, accuracy=accuracy)
         found = time_history(structure, shaking, settings, with_fixed_base=False)
         assert found.reentries == returns
-        for ours, theirs in (
-            (found.trace.rotation, theta), (found.trace.floor_displacements, floors)
-        ):  # fmt: skip
-            np.testing.assert_allclose(ours, theirs, atol=bar * np.abs(theirs).max())
+        for name, ours, theirs in (
+            ("tilts [rad]", found.trace.rotation, theta),
+            ("floor displacements [m]", found.trace.floor_displacements, floors),
+        ):
+            conforms(
+                "compliant ends", f"{name} of a history, accuracy {accuracy:g}", theirs,
+                ours, bar * np.abs(theirs).max(),
+                "independent program", "integrator from the law of one end",
+            )  # fmt: skip
 
 
 @needs_compiled_kernels
@@ -200,6 +214,13 @@ def strips(structure, settlement, theta):
     return moment, 2.0 * (settlement - high) - 2.0 * H * (1.0 - np.cos(theta))
 
 
+def by_strips(quantity, expected, found, within):
+    conforms(
+        "compliant ends", f"{quantity}, static bed", expected, found, within,
+        "independent program", "4,000 springs without tension, by bisection",
+    )  # fmt: skip
+
+
 @pytest.mark.evidence("compliant ends", "program")
 @pytest.mark.parametrize("kind", ["plane", "edges"])
 @pytest.mark.parametrize("settlement", [6e-6, 4.7e-5, 1.76e-4])
@@ -211,20 +232,20 @@ def test_moments_and_stiffness_of_a_static_bed(kind, settlement):
     lifts = settlement / b.half_width
     assert bed.uplift_rotation == pytest.approx(lifts, rel=1e-12)
     # K_s is the secant up to phi_u, with C there; dF/du_b at 0 has C at 0, 2 tan(alpha) phi_u less.
-    for turned, C, rel in (
-        (lifts, math.cos(b.alpha - lifts), 1e-6),
-        (0.01 * lifts, math.cos(b.alpha), 2.1 * b.slenderness * lifts),
+    for name, turned, C, rel in (
+        ("secant", lifts, math.cos(b.alpha - lifts), 1e-6),
+        ("tangent", 0.01 * lifts, math.cos(b.alpha), 2.1 * b.slenderness * lifts),
     ):
         moment = float(strips(structure, settlement, np.array([turned]))[0][0])
         stiffness = moment / turned / (2.0 * b.semi_diagonal * C) ** 2
-        assert bed.stiffness == pytest.approx(stiffness, rel=rel)
+        by_strips(f"{name} stiffness [N/m]", stiffness, bed.stiffness, rel * stiffness)
     x = b.alpha * np.linspace(0.1, 0.8, 15)
     moments = strips(structure, settlement, x)[0] / size
     path = bed.path(x)
-    np.testing.assert_allclose(path.arm, moments, atol=1e-3 * sine)
+    by_strips("moments over 2 W R", moments, path.arm, 1e-3 * sine)
     ends = [strips(structure, settlement, x * (1.0 + h))[1] for h in (-0.01, 0.01)]
     arms = (ends[1] - ends[0]) / (0.02 * x) / (2.0 * b.semi_diagonal)
-    np.testing.assert_allclose(path.lift_arm, arms, atol=2e-3 * sine)
+    by_strips("levers of the lift over 2 R", arms, path.lift_arm, 2e-3 * sine)
 
 
 @pytest.mark.parametrize("upwards", [3.0, 6.0])

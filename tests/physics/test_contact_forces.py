@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from conformance import conforms
 from oracles.storey_lagrangian import StoreyLagrangian
 from paper_structures import (
     FLAT,
@@ -31,7 +32,7 @@ RECORD, VERTICAL = waves(1.5, DT, 4.0, seed=2), waves(1.5, DT, 3.0, seed=3)
 @pytest.mark.parametrize(
     "structure",
     [podium(0, 0.15, 0.5), podium(2, 0.15, FLAT), podium(3, 0.15, 0.5)],
-    ids=str,
+    ids=lambda s: f"{s.storeys}-{s.bearing.curvature_ratio}",
 )
 def test_demands_are_newtons_sums_over_all_masses(structure):
     settings = TimeHistorySettings(free_vibration=0.0)
@@ -79,7 +80,10 @@ def test_demands_are_newtons_sums_over_all_masses(structure):
     for where, (shear, pressure, _) in zip(("top", "bottom"), ends, strict=True):
         for kind, known in (("shear", shear), ("normal", pressure)):
             ours = getattr(trace, f"{kind}_{where}")
-            assert ours == pytest.approx(known, abs=1e-11 * carried * g)
+            conforms(
+                "forces in columns, friction", f"{kind} at the {where} [N]", known, ours,
+                1e-11 * carried * g, "identity", "Newton's law for each mass",
+            )  # fmt: skip
 
 
 @pytest.mark.evidence("forces in columns, friction", "exact")
@@ -91,7 +95,10 @@ def test_a_block_that_begins_to_rock_needs_the_friction_of_its_slope():
         structure, ground([0.0, peak, 0.0], 0.1), TimeHistorySettings(free_vibration=0.0)
     )
     assert result.uplifts == 1
-    assert result.friction_demand == pytest.approx(0.15, rel=1e-6)
+    conforms(
+        "forces in columns, friction", "friction demand of a block", 0.15,
+        result.friction_demand, 1.5e-7, "closed form", "F = N tan(alpha)",
+    )  # fmt: skip
     assert (result.history.friction_top, result.history.normal_top) == (0.0, np.inf)
 
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from conformance import conforms
 from paper_structures import (
     FLAT,
     SLENDER,
@@ -78,7 +79,10 @@ def test_uplift_is_delayed_by_what_devices_hold(slope, rho, sign):
     limit = G * math.tan(alpha) + 2.0 * held / (bare.columns_mass * (1.0 + 2.0 * gamma))
     motion = follow(structure, ramp(sign, limit / RAMP + 0.1))
     assert motion.events[0].kind == "uplift"
-    assert motion.events[0].time == pytest.approx(limit / RAMP, rel=1e-12)
+    conforms(
+        "devices", "time of uplift with devices [s]", limit / RAMP, motion.events[0].time,
+        1e-12 * limit, "closed form", "g tan(alpha) + 2 held/(N m_c (1 + 2 gamma))",
+    )  # fmt: skip
 
 
 @pytest.mark.evidence("devices", "exact")
@@ -94,7 +98,11 @@ def test_friction_sticks_and_slides_at_its_limit(slope, rho, sign):
     limit = F_d + force if sign < 0.0 else F_d - force
     mass = 0.5 * bare.columns_mass + bare.cap_beam_mass
     assert [event.kind for event in motion.events[:2]] == ["sticking", "sliding"]
-    assert motion.events[1].time == pytest.approx(limit / mass / RAMP, rel=1e-10)
+    time = limit / mass / RAMP
+    conforms(
+        "devices", "time of sliding [s]", time, motion.events[1].time, 1e-10 * time,
+        "closed form", "(F_d +- F)/(N m_c/2 + m_b)",
+    )  # fmt: skip
 
 
 @pytest.mark.evidence("devices", "exact")
@@ -159,9 +167,11 @@ def test_a_damper_falls_towards_its_final_velocity(exponent):
     _, far, _ = path(bare, start)
     assert way < 0.8 * far
     at = int(np.argmin(np.abs(motion.trace.time - time)))
-    assert far - path(bare, float(motion.trace.rotation[at]))[1] == pytest.approx(
-        way, rel=SMALL
-    )
+    gone = far - path(bare, float(motion.trace.rotation[at]))[1]
+    conforms(
+        "devices", "way to 0.9 of the final velocity [m]", way, gone, SMALL * way,
+        "closed form", "integral of M_e v dv/(F_0 - c v^a), slender",
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize(("exponent", "share"), [(0.2, 1.0), (0.3, 2.0)])

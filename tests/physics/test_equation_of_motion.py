@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from conformance import conforms
 from hypothesis import given
 from hypothesis import strategies as st
 from oracles.storey_lagrangian import Contact, StoreyLagrangian
@@ -219,7 +220,10 @@ def test_misprint_2_the_sign_of_gravity_in_k_l(rho):
     ours, wrong = (-(matrix[0, 0] + matrix[0, 1]) / M[0, 0] for matrix in (K, wrong_K))
     # linear to first order in alpha and in x
     size = structure.gravity / structure.bearing.semi_diagonal
-    assert ours == pytest.approx(slope, abs=0.01 * size)
+    conforms(
+        "equation of motion", "acceleration over a tilt [1/s2]", slope, ours, 0.01 * size,
+        "identity", "K_L is the derivative of the forces",
+    )  # fmt: skip
     assert abs(wrong - slope) > 0.1 * size
     assert wrong == pytest.approx(-ours, rel=1e-6)
 
@@ -235,3 +239,8 @@ def test_misprint_3_the_first_order_theta_cr_jumps_at_its_rho_cr():
         paper = above.critical_rotation_of_paper / below.critical_rotation_of_paper - 1.0
         assert abs(above.critical_rotation / below.critical_rotation - 1.0) < 1e-8
         assert abs(paper) == pytest.approx(jump, rel=0.01)
+        conforms(
+            "geometry of columns", f"theta_cr at the printed rho_cr, tan(alpha) {tan_alpha}",
+            below.critical_rotation, above.critical_rotation,
+            1e-8 * below.critical_rotation, "identity", "a root of a continuous B(x)",
+        )  # fmt: skip

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conformance import conforms
 from paper_structures import (
     building,
     ground,
@@ -110,6 +111,13 @@ def run(given, fema_record, accuracy=1.0):
     return time_history(structure_of(given), motion, settings)
 
 
+def same(quantity, expected, found, within, capability="floors on vertical springs"):
+    conforms(
+        capability, f"{quantity} of a history", expected, found, within,
+        "independent program", "Lagrange's equations, adaptive rule of order 8",
+    )  # fmt: skip
+
+
 @needs_compiled_kernels
 @pytest.mark.evidence("floors on vertical springs", "program")
 @pytest.mark.evidence("storeys that yield", "program")
@@ -120,24 +128,26 @@ def test_histories_of_another_program(name, fema_record):
     result = run(given, fema_record, 2.0 if name == "vy3" else 1.0)
     left, structure, n = result.history, result.structure, given["n"]
     assert structure.restitution == pytest.approx(found["e"], abs=1e-9)
-    assert left["max_theta"] == pytest.approx(found["max_rotation"], rel=1e-7)
+    top = found["max_rotation"]
+    same("largest tilt [rad]", top, left["max_theta"], 1e-7 * top)
     times = np.array(found["rotation_every_s"])
     rows = np.rint(times[:, 0] / result.record.dt).astype(int)
     within = rows < len(result.trace.rotation)
     assert within.sum() >= min(len(rows) - 1, 3)
-    off = result.trace.rotation[rows[within]] - times[within, 1]
     # 2e-8 are found but for strong shaking, which makes 3e-6 of the last digits
-    assert np.max(np.abs(off)) < 1e-5 * found["max_rotation"]
+    tilts = result.trace.rotation[rows[within]]
+    same("tilts [rad]", times[within, 1], tilts, 1e-5 * top)
     # looked at between samples by parabolas of a part of each step
-    assert left["storey_shear"][:n] == pytest.approx(found["storey_shears"], rel=3e-5)
+    shears = np.array(found["storey_shears"])
+    same("largest storey shears [N]", shears, left["storey_shear"][:n], 3e-5 * shears)
     upper = structure.cap_beam_mass + structure.superstructure_mass
     lower = upper + structure.columns_mass
     largest = left["heavy_bottom"] * lower * STANDARD_GRAVITY
     least = (
         min(left["normal_top"] * upper, left["normal_bottom"] * lower) * STANDARD_GRAVITY
     )
-    assert largest == pytest.approx(found["N_max"], rel=1e-5)
-    assert least == pytest.approx(found["N_min"], abs=1e-5 * structure.weight)
+    same("largest force of columns [N]", found["N_max"], largest, 1e-5 * found["N_max"])
+    same("least force of columns [N]", found["N_min"], least, 1e-5 * structure.weight)
     assert left["events"][IMPACT] == found["impacts"]
     assert left["events"][UPLIFT] == found["uplifts"]
     spent, energy = found["energy"], result.energy
@@ -150,15 +160,19 @@ def test_histories_of_another_program(name, fema_record):
         (left["energy_yielded"], "yielded"),
         (energy.stored, "stored"),
     ):
-        assert mine == pytest.approx(spent[theirs], abs=1e-5 * scale), theirs
+        same(f"energy {theirs} [J]", spent[theirs], mine, 1e-5 * scale)
     if "ductility" in found:
-        assert left["ductility"][0, :n] == pytest.approx(found["ductility"], rel=1e-6)
+        mu = np.array(found["ductility"])
+        same("ductilities", mu, left["ductility"][0, :n], 1e-6 * mu, "storeys that yield")
         above = known(structure.superstructure)
         off = above.stiffnesses * (left["slip"][0, :n] - found["plastic_drift"])
         assert (
             np.max(np.abs(off / known(above.strengths))) < 3e-4
         )  # of the drift at yield
-        assert left["yielded"][0, :n] == pytest.approx(found["yielded"], rel=1e-5)
+        spent_there = np.array(found["yielded"])
+        within = 1e-5 * np.maximum(spent_there, 1e-9)
+        found_there = left["yielded"][0, :n]
+        same("energies [J]", spent_there, found_there, within, "storeys that yield")
 
 
 @needs_compiled_kernels
@@ -168,7 +182,8 @@ def test_pairs_of_another_program(name, fema_record):
     given, found = BOTH[name]["given"], BOTH[name]["found"]
     result = run(given, fema_record)
     left = result.history
-    assert left["max_theta"] == pytest.approx(found["max_rotation"], rel=1e-5)
+    top = found["max_rotation"]
+    same("largest tilt [rad]", top, left["max_theta"], 1e-5 * top)
     azimuth = math.remainder(left["max_azimuth"] - found["azimuth_of_it"], 2.0 * math.pi)
     assert abs(azimuth) < 1e-4
     assert left["events"][PASS] == found["passes"]
@@ -183,15 +198,20 @@ def test_pairs_of_another_program(name, fema_record):
     dense = denser_trace(result, 2e-4)
     masses = known(result.structure.superstructure).masses
     floors = (STANDARD_GRAVITY + known(dense.vertical_accelerations)) @ masses
-    assert np.max(floors) == pytest.approx(found["floors_max"], rel=1e-4)
-    assert np.min(floors) == pytest.approx(found["floors_min"], abs=1e-4 * found["W"])
-    energy, spent = result.energy, found["energy"]
-    assert energy.input == pytest.approx(spent["input"], rel=1e-5)
-    damped = energy.damped + energy.damped_vertical
-    assert damped == pytest.approx(
-        spent["damped_with_vertical"], abs=1e-5 * spent["input"]
+    most = found["floors_max"]
+    same("largest force of floors [N]", most, np.max(floors), 1e-4 * most)
+    same(
+        "least force of floors [N]",
+        found["floors_min"],
+        np.min(floors),
+        1e-4 * found["W"],
     )
-    assert energy.impact == pytest.approx(spent["lost"], abs=1e-5 * spent["input"])
+    energy, spent = result.energy, found["energy"]
+    supplied = spent["input"]
+    same("energy input [J]", supplied, energy.input, 1e-5 * supplied)
+    damped = energy.damped + energy.damped_vertical
+    same("energy damped [J]", spent["damped_with_vertical"], damped, 1e-5 * supplied)
+    same("energy lost [J]", spent["lost"], energy.impact, 1e-5 * supplied)
 
 
 def usual(law=FLEXIBLE, **of_building):

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from conformance import conforms
 from paper_structures import (
     FLAT,
     SLENDER,
@@ -20,7 +21,7 @@ from paper_structures import (
     waves,
 )
 from scipy.optimize import brentq
-from shown_commands import VERIFICATION, told
+from shown_commands import ERRATA, told
 
 from rpscli.analyses.demand import demand
 from rpscli.analyses.settings import TimeHistorySettings
@@ -66,7 +67,12 @@ def test_slender_columns_rock_with_the_linear_periods(rho):
 
     times = impact_times(let_go(structure, start, 12.0, 0.02))
     expected = [quarter(start), *(2.0 * quarter(amplitude(i)) for i in range(1, 8))]
-    assert np.diff(times[:8], prepend=0.0) == pytest.approx(expected, rel=LINEAR)
+    found = np.diff(times[:8], prepend=0.0)
+    for number, (wanted, mine) in enumerate(zip(expected, found, strict=True), 1):
+        conforms(
+            "free-standing blocks", f"duration before impact {number} [s]", wanted, mine,
+            LINEAR * wanted, "closed form", "acosh, acos or a parabola, linear theory",
+        )  # fmt: skip
 
 
 @pytest.mark.parametrize("rho", [FLAT, 0.5])
@@ -270,7 +276,11 @@ def test_half_sine_without_impact(size):
     expected = 1.0 / math.sin(brentq(excess, 1e-3, 0.5 * math.pi))
     unit = structure.gravity * SLENDER
     least = least_amplitude(structure, unit * HALF_SINE, 1.0, 1.5 * expected)
-    assert least == pytest.approx(expected, rel=2.0 * CHORDS + 2.0 * SLENDER**2)
+    conforms(
+        "free-standing blocks", "half sine that overturns [g alpha]", expected, least,
+        (2.0 * CHORDS + 2.0 * SLENDER**2) * expected,
+        "closed form", "1/sin(psi), overturning without impact",
+    )  # fmt: skip
 
 
 PUBLISHED_STEP = 1e-3
@@ -292,12 +302,16 @@ def test_makris_and_roussos_linear(half_width, half_height, shape, falls):
     linear = replace(slender_block(size, real.restitution), gravity=9.81)
     unit = linear.gravity * SLENDER
     least = least_amplitude(linear, unit * shape, 1.0, 3.0) * real.bearing.alpha
-    assert least == pytest.approx(falls, abs=0.5 * PUBLISHED_STEP)
-    told(
-        VERIFICATION,
-        f"| {2 * half_width:g} m x {2 * half_height:g} m, linear, ... g |",
-        least,
-    )
+    printed("linear block", falls, least, 0.5 * PUBLISHED_STEP)
+    block_of = f"| {2 * half_width:g} m x {2 * half_height:g} m, linear, ... g |"
+    told(ERRATA, block_of, least)
+
+
+def printed(name, expected, found, within):
+    conforms(
+        "free-standing blocks", f"pulse that overturns [g], {name}", expected, found, within,
+        "published", "Makris and Roussos, Geotechnique 50 (2000)",
+    )  # fmt: skip
 
 
 @needs_compiled_kernels
@@ -310,9 +324,9 @@ def test_makris_and_roussos_linear(half_width, half_height, shape, falls):
 def test_makris_and_roussos_nonlinear(shape, published, tolerance):
     structure = replace(block(0.5, 1.5), gravity=9.81)
     least = least_amplitude(structure, structure.gravity * shape, 0.4, 0.7)
-    assert least == pytest.approx(published, abs=tolerance)
+    printed("nonlinear block", published, least, tolerance)
     told(
-        VERIFICATION,
+        ERRATA,
         f"nonlinear, one {'sine' if shape is SINE else 'cosine'} | ... g |",
         least,
     )

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from conformance import conforms
 from paper_structures import building, ground, linear_response, podium, waves
 
 from rpscli.analyses.settings import TimeHistorySettings
@@ -24,6 +25,13 @@ of_buildings = pytest.mark.parametrize(
 )
 
 
+def by_lsim(quantity, expected, found, within):
+    conforms(
+        "buildings on bearings under earthquakes", f"{quantity} in full contact", expected,
+        found, within, "closed form", "scipy.signal.lsim, exact for linear pieces",
+    )  # fmt: skip
+
+
 @pytest.mark.evidence("buildings on bearings under earthquakes", "exact")
 @of_buildings
 def test_full_contact_equals_lsim(above):
@@ -38,16 +46,17 @@ def test_full_contact_equals_lsim(above):
     # the reference is exact for a load linear between samples; steps err by some (w h)^7/1e5 of the
     # highest mode, which has a small part
     tolerance = 1e-8 * float(np.max(np.abs(u)))
-    assert result.trace.floor_displacements == pytest.approx(u, abs=tolerance)
+    by_lsim("floor displacements [m]", u, result.trace.floor_displacements, tolerance)
     shears = above.stiffnesses * np.diff(u, axis=1, prepend=0.0)
     size = float(np.max(np.abs(shears)))
-    assert result.trace.storey_shears == pytest.approx(shears, abs=1e-6 * size)
+    by_lsim("storey shears [N]", shears, result.trace.storey_shears, 1e-6 * size)
     sampled = np.max(np.abs(shears), axis=0)
     assert np.all(result.storey_shears >= (1.0 - 1e-6) * sampled)
     assert result.storey_shears == pytest.approx(sampled, rel=0.05)
     absolute = -(u @ K + du @ C) / above.masses
     size = float(np.max(np.abs(absolute)))
-    assert result.trace.floor_accelerations == pytest.approx(absolute, abs=1e-5 * size)
+    found = result.trace.floor_accelerations
+    by_lsim("floor accelerations [m/s2]", absolute, found, 1e-5 * size)
     sampled = np.max(np.abs(absolute), axis=0)
     assert np.all(result.floor_accelerations >= (1.0 - 1e-5) * sampled)
     assert result.floor_accelerations == pytest.approx(sampled, rel=0.1)
@@ -93,7 +102,10 @@ def test_the_energy_of_full_contact_is_accounted_for(above, dt):
     assert energy.impact == energy.created == 0.0
     assert energy.input > 0.0
     # a step loses 1e-5 (w h)^8 of a vibration; the highest mode has a small part
-    assert abs(energy.residual) < 1e-8 * energy.input
+    conforms(
+        "steps, events, energy", "residual over the input in full contact", 0.0,
+        energy.residual / energy.input, 1e-8, "identity", "balance of energy",
+    )  # fmt: skip
     if above.damping.ratio == 0.0:
         assert energy.damped == 0.0
 

@@ -6,6 +6,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+from conformance import conforms
 from oracles.second_integrator import simulate
 from oracles.storey_lagrangian import StoreyLagrangian
 from paper_structures import (
@@ -44,6 +45,13 @@ def on_spheres(storeys=0, *devices, flat=0.0, law=None):
     return PodiumStructure(
         bearing, COLUMNS, BEAM, above, law or ImpactLaw(), G, tuple(devices), columns=4
     )
+
+
+def swings(quantity, expected, found, relative):
+    conforms(
+        "spherical ends", quantity, expected, found, relative * abs(expected),
+        "closed form", "pendulum of the length h^2/(2 r - h), Coulomb's decay",
+    )  # fmt: skip
 
 
 @pytest.mark.evidence("spherical ends", "program")
@@ -90,13 +98,14 @@ def test_motion_is_that_of_the_second_integrator(structure, scale, up):
     size = np.max(np.abs(other.theta))
     assert result.outcome == "survived"
     assert (size > structure.bearing.beta) == (scale == 4.0)
-    np.testing.assert_allclose(
-        result.trace.rotation, other.theta, rtol=0.0, atol=1e-7 * size
-    )
+    histories = [("tilts [rad]", other.theta, result.trace.rotation)]
     if structure.storeys:
-        np.testing.assert_allclose(
-            result.trace.drifts, other.drifts, rtol=0.0, atol=1e-7 * size
-        )
+        histories.append(("drifts [m]", other.drifts, result.trace.drifts))
+    for name, expected, found in histories:
+        conforms(
+            "spherical ends", f"{name} of a history", expected, found, 1e-7 * size,
+            "independent program", "second integrator, DOP853 in tilt and drifts",
+        )  # fmt: skip
     assert result.impacts == result.uplifts == 0
     assert np.count_nonzero(np.diff(np.sign(result.trace.rotation))) > 0
     assert abs(result.energy.residual) < 1e-7 * abs(result.energy.input)
@@ -109,13 +118,12 @@ def test_small_swings_have_the_period_of_height_and_radius():
     h, frame = 2.0 * H, on_spheres()
     stiffness = (0.5 * COLUMNS + BEAM) * G * (2.0 * RADIUS - h) / h**2
     known = 2.0 * math.pi * math.sqrt((COLUMNS / 3.0 + BEAM) / stiffness)
-    assert frame.rolling_period == pytest.approx(known, rel=1e-14)
+    swings("period of a frame [s]", known, frame.rolling_period, 1e-14)
     back = let_go(frame, 1e-5, 2.0 * known).trace
     assert np.interp(known, back.time, back.rotation) == pytest.approx(1e-5, rel=1e-5)
     pendulum = 2.0 * math.pi * math.sqrt(h**2 / (2.0 * RADIUS - h) / G)
-    assert replace(frame, columns_mass=1.0).rolling_period == pytest.approx(
-        pendulum, rel=1e-5
-    )
+    period = replace(frame, columns_mass=1.0).rolling_period
+    swings("period on massless columns [s]", pendulum, period, 1e-5)
 
 
 @pytest.mark.evidence("spherical ends", "exact")
@@ -135,10 +143,12 @@ def test_friction_takes_the_same_from_each_swing_and_then_holds(holds):
     structure = on_spheres(0, device)
     result = let_go(structure, start, 40.0)
     # 1, -0.74, 0.48, -0.22 and, before it is upright again, -0.04 of the start
-    assert result.trace.rotation[-1] == pytest.approx(start - 8.0 * step, rel=1e-5)
-    assert result.events[-1].time == pytest.approx(
-        2.0 * (frame.rolling_period or 0.0), rel=1e-6
+    rest = start - 8.0 * step
+    swings(
+        "tilt at rest after four half swings [rad]", rest, result.trace.rotation[-1], 1e-5
     )
+    four_halves = 2.0 * (frame.rolling_period or 0.0)
+    swings("time of rest [s]", four_halves, result.events[-1].time, 1e-6)
     assert result.outcome == "stays_tilted"
     assert [event.kind for event in result.events] == ["sticking"]
     # and it holds the podium upright as long as the ground asks for less, to either side
@@ -180,7 +190,7 @@ def test_restoring_force_and_where_it_ends():
     )
     h = 2.0 * H
     stiffness = structure.weight * (2.0 * RADIUS - h) / h**2
-    assert structure.initial_stiffness == pytest.approx(stiffness, rel=1e-14)
+    swings("stiffness [N/m]", stiffness, structure.initial_stiffness, 1e-14)
 
 
 def test_what_does_not_stand_or_strike_is_refused():

@@ -2,11 +2,13 @@ import math
 
 import numpy as np
 import pytest
+from conformance import conforms
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from paper_structures import known
 from scipy.signal import lsim
 
+from rpscli.analyses.known_systems import DAMPINGS, record_numbers
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
@@ -18,6 +20,17 @@ from rpscli.records.measures import (
     response_spectrum,
     velocity,
 )
+
+NUMBERS = dict(record_numbers())
+
+
+def known_system(quantity, expected, tolerance):
+    """A motion that every installation measures again."""
+    conforms(
+        "measures and spectra of records", quantity, expected, NUMBERS[quantity],
+        tolerance * expected, "closed form", "integrals of the motion, textbook overshoot",
+    )  # fmt: skip
+
 
 SAMPLES = st.lists(st.floats(-10.0, 10.0), min_size=2, max_size=30)
 
@@ -39,35 +52,41 @@ def test_a_triangle_by_hand():
     measures = intensity_measures(made)
     assert (measures.pga, measures.pgv) == (2.0, 2.0)
     assert measures.pgd == pytest.approx(2.0, rel=1e-15)
-    assert measures.arias == pytest.approx(
-        math.pi / (2 * STANDARD_GRAVITY) * 4.0, rel=1e-15
-    )
+    arias = math.pi / (2 * STANDARD_GRAVITY) * 4.0
+    of_triangle("Arias intensity [m/s]", arias, measures.arias)
     assert measures.cav == 2.0
     # The Husid curve 0, 2, 4 is straight here: 90 % of 2 s.
-    assert measures.d5_95 == pytest.approx(1.8, rel=1e-14)
+    of_triangle("duration from 5 to 95 % [s]", 1.8, measures.d5_95)
+
+
+def of_triangle(quantity, expected, found):
+    conforms(
+        "measures and spectra of records", f"{quantity}, triangle", expected, found,
+        1e-14 * expected, "hand calculation", "a = 0, 2, 0 m/s2 at 1 s",
+    )  # fmt: skip
 
 
 @pytest.mark.evidence("measures and spectra of records", "exact")
 def test_one_sine_against_its_integrals():
     a, w, count = 3.0, 2.0 * math.pi, 4000
-    t = np.arange(count + 1) / count
-    made = motion(a * np.sin(w * t), 1.0 / count)
-    measures = intensity_measures(made)
     second_order = (w / count) ** 2  # relative error of straight lines through a sine
-    assert measures.pgv == pytest.approx(2.0 * a / w, rel=second_order)
-    assert measures.pgd == pytest.approx(a / w, rel=second_order)  # a t/w at t = 1 s
-    assert measures.arias == pytest.approx(
-        math.pi / (2 * STANDARD_GRAVITY) * a**2 / 2, rel=1e-12
-    )
-    assert measures.cav == pytest.approx(2.0 * a / math.pi, rel=second_order)
+    known_system("PGV [m/s], one sine", 2.0 * a / w, second_order)
+    known_system("PGD [m], one sine", a / w, second_order)  # a t/w at t = 1 s
+    arias = math.pi / (2 * STANDARD_GRAVITY) * a**2 / 2
+    known_system("Arias intensity [m/s], one sine", arias, 1e-12)
+    known_system("CAV [m/s], one sine", 2.0 * a / math.pi, second_order)
 
 
 @pytest.mark.evidence("measures and spectra of records", "exact")
 def test_significant_durations_by_hand():
     # Flat for 10 s: the Husid curve is straight, so 70 % and 90 % of 10 s.
     measures = intensity_measures(motion([1.0] * 101, 0.1))
-    assert measures.d5_75 == pytest.approx(7.0)
-    assert measures.d5_95 == pytest.approx(9.0)
+    for part, expected, found in ((75, 7.0, measures.d5_75), (95, 9.0, measures.d5_95)):
+        conforms(
+            "measures and spectra of records",
+            f"duration from 5 to {part} % [s], constant for 10 s", expected, found,
+            1e-6 * expected, "hand calculation", "a straight Husid curve",
+        )  # fmt: skip
 
 
 @pytest.mark.evidence("measures and spectra of records", "exact")
@@ -75,12 +94,11 @@ def test_spectral_measures_of_a_sudden_load():
     """Its spectrum is flat: a (1 + e), e the decay over half a cycle, at every period."""
     a, damping = 3.0, 0.05
     peak = a * (1.0 + math.exp(-math.pi * damping / math.sqrt(1.0 - damping**2)))
-    load = motion([a] * 4001, 0.01)
     tolerance = 2e-3  # of spectra between their samples
-    assert measured(load, "AvgSa", 0.8) == pytest.approx(peak, rel=tolerance)
+    known_system("AvgSa [m/s2], sudden load", peak, tolerance)
     # The integral of T/2pi from 0.1 to 2.5 s.
     of_one = (2.5**2 - 0.1**2) / (4.0 * math.pi)
-    assert measured(load, "Housner") == pytest.approx(peak * of_one, rel=tolerance)
+    known_system("Housner intensity [m], sudden load", peak * of_one, tolerance)
 
 
 @pytest.mark.evidence("measures and spectra of records", "exact")
@@ -95,11 +113,14 @@ def test_filtered_incremental_velocity_of_three_long_pushes():
         * math.erf(0.35 * period / (wide * math.sqrt(2.0)))
     )
     # The filter takes (f/corner)^4 with f = 1/(2 pi 2 s): 5e-6.
-    wanted = pytest.approx(6.0 * one, rel=2e-5)
-    assert measured(GroundMotion(three, dt), "FIV3", period) == wanted
     # A fourth, and pushes to the other side that gain less, change nothing.
     more = np.concatenate([three, 0.5 * bell, -0.9 * three])
-    assert measured(GroundMotion(more, dt), "FIV3", period) == wanted
+    for name, values in (("three", three), ("seven", more)):
+        conforms(
+            "measures and spectra of records", f"FIV3 [m/s], {name} long pushes",
+            6.0 * one, measured(GroundMotion(values, dt), "FIV3", period),
+            2e-5 * 6.0 * one, "closed form", "integrals of bell curves over 0.7 T",
+        )  # fmt: skip
 
 
 @pytest.mark.evidence("measures and spectra of records", "exact")
@@ -119,7 +140,11 @@ def test_filtered_incremental_velocity_of_a_sine(frequency):
     wanted = 3.0 * a * gain * abs(math.sin(math.pi * frequency * 0.7 * period))
     wanted /= math.pi * frequency
     found = measured(GroundMotion(a * swing, dt), "FIV3", period)
-    assert found == pytest.approx(wanted, rel=3e-3)  # ramps are not one frequency
+    conforms(
+        "measures and spectra of records", f"FIV3 [m/s], sine of {frequency} Hz",
+        wanted, found, 3e-3 * wanted,  # ramps are not one frequency
+        "closed form", "amplitude, gain of the filter, integral over 0.7 T",
+    )  # fmt: skip
 
 
 @pytest.mark.evidence("measures and spectra of records", "exact")
@@ -189,14 +214,20 @@ def test_steady_resonance_by_formula():
     spectrum = response_spectrum(made, [1.0], 0.0)
     # Largest at the end: a cycles/(2 w) * 2 pi/(w), which free vibration then keeps.
     expected = a * cycles * 2.0 * math.pi / (2.0 * w**2)
-    assert spectrum.displacement[0] == pytest.approx(expected, rel=2 * (w / 2000) ** 2)
+    conforms(
+        "measures and spectra of records", "Sd [m], ten cycles at resonance, undamped",
+        expected, spectrum.displacement[0], 2 * (w / 2000) ** 2 * expected,
+        "closed form", "a (wt cos(wt) - sin(wt))/(2 w^2)",
+    )  # fmt: skip
 
 
 @pytest.mark.evidence("measures and spectra of records", "exact")
-@pytest.mark.parametrize("damping", [0.0, 0.05, 0.3])
+@pytest.mark.parametrize("damping", DAMPINGS)
 def test_sudden_constant_load_overshoots_as_in_textbooks(damping):
     made = motion([2.0, 2.0], 3.0)
     overshoot = 1.0 + math.exp(-damping * math.pi / math.sqrt(1.0 - damping**2))
+    name = f"Sa at 4 s [m/s2], sudden load, damping {damping:g}"
+    known_system(name, 3.0 * overshoot, 2e-3)
     sa = measured(made, "Sa", 4.0, damping)
     # At least 50 samples a period, so one within 1/100 of it from the peak: 1 - cos(pi/50).
     assert sa == pytest.approx(2.0 * overshoot, rel=2e-3)

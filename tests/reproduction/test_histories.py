@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from paper_structures import needs_compiled_kernels
 from scipy.stats import beta
-from shown_commands import ROOT, THEORY, run_all, table, told
+from shown_commands import ERRATA, ROOT, run_all, table, told
 from sweep.small_studies import study_file
 
 from reproduction.conftest import CASES, rows_of
@@ -157,7 +157,7 @@ def test_figure_8_small_rotations_and_slopes(points):
     )
     three, six, nine = least.min(axis=1)
     told(README, "least values", nine, 9, six, 6, three, 3)
-    told(THEORY, "small rotations | not below", nine, six, three)
+    told(ERRATA, "small rotations | not below", nine, six, three)
 
 
 @pytest.mark.evidence("buildings on bearings under earthquakes", "published")
@@ -439,7 +439,7 @@ def test_numbers_of_the_study_of_impact_laws(tmp_path):
     stiff = shear[stout & (period == 0.15)]
     less = 100 * (1 - np.array([np.nanmedian(stiff), np.nanmedian(stiff, axis=1).min()]))
     told(LAW, "or more. There `rigid` is", *less)
-    told(THEORY, "on stout columns: `rigid` is", less[0])
+    told(ERRATA, "on stout columns: `rigid` is", less[0])
     assert np.nanquantile(stiff, 0.05) < 0.5
     less = 100 * (1 - np.nanquantile(shear[stout & (period == 0.3)], [0.5, 0.05]))
     told(LAW, "in the same range `rigid` is", *less)

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 from paper_structures import needs_recorded_motions
-from shown_commands import VERIFICATION, table
+from shown_commands import CONFORMANCE, table
 
 import rpscli
 from rpscli.records.recordings import clusters
@@ -38,7 +38,7 @@ STUDY = {
 
 SHOWN = [
     [float(number) for number in re.findall(r"\d+\.\d", " ".join(row[2:]))]
-    for row in table(VERIFICATION, "recordings must be drawn:")[1:]
+    for row in table(CONFORMANCE, "recordings must be drawn:")[1:]
 ]
 
 
@@ -75,7 +75,7 @@ def test_bands_and_shares_hold_what_they_say(outcomes, what, cluster_of):
     """22 pairs drawn from 22, or 14 events of one or two pairs from 14, 1500 times: 0.90 +- 0.03.
 
     1500 draws have a standard error of 0.008, and the same seeds give the same numbers, those of
-    VERIFICATION.md. Percentiles of few clusters are somewhat narrow.
+    CONFORMANCE.md. Percentiles of few clusters are somewhat narrow.
     """
     every, draws, events = outcomes[what], 1500, cluster_of is EVENTS
     count = len(set(cluster_of))

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conformance import conforms
 from matplotlib.patches import Rectangle, StepPatch
 from report.test_figures_of_studies import labelled, panels, same
 from scipy.integrate import quad
@@ -48,7 +49,11 @@ def test_a_power_law_gives_the_closed_form(slope, beta):
     hazard = Hazard(ends, 2e-4 * (ends / median) ** -slope)
     expected = 2e-4 * math.exp(0.5 * (slope * beta) ** 2)
     # Logarithms up to 370 lose three of sixteen digits.
-    assert annual_rate(hazard, median, beta) == pytest.approx(expected, rel=1e-12)
+    conforms(
+        "risk", f"annual rate, slope {slope:g}, beta {beta:g}", expected,
+        annual_rate(hazard, median, beta), 1e-12 * expected,
+        "closed form", "H(median) exp(k^2 beta^2/2)",
+    )  # fmt: skip
 
 
 @pytest.mark.evidence("risk", "exact")
@@ -75,7 +80,11 @@ def test_any_curve_gives_what_quadrature_gives(median, beta):
     at = np.array([0.1, 0.17, 0.4, 1.0, 1.6, 2.5])
     found = rates_above(KINKED, median, beta, at)
     # The tail that the quadrature leaves out is exp(-3.3 x 12) of the last rate.
-    assert found == pytest.approx([above(float(value)) for value in at], rel=1e-9)
+    expected = np.array([above(float(value)) for value in at])
+    conforms(
+        "risk", f"annual rates above six intensities, median {median:g}, beta {beta:g}",
+        expected, found, 1e-9 * expected, "closed form", "quadrature, scipy.integrate.quad",
+    )  # fmt: skip
     assert annual_rate(KINKED, median, beta) == found[0]
 
 
@@ -105,7 +114,10 @@ def test_a_rate_straight_from_shares_is_what_quadrature_gives():
     probable = np.interp(np.log(at), np.log(levels), shares)
     expected = float(-np.diff(rate) @ (probable[1:] + probable[:-1]) / 2.0)
     # Trapezoids over steps of 3e-5 of ln(im) are exact to their square.
-    assert rate_of_shares(KINKED, levels, shares) == pytest.approx(expected, rel=1e-8)
+    conforms(
+        "risk", "annual rate from shares", expected, rate_of_shares(KINKED, levels, shares),
+        1e-8 * expected, "closed form", "400,000 trapezoids on a grid with every kink",
+    )  # fmt: skip
     assert rate_of_shares(KINKED, np.array([0.01]), np.array([0.3])) == pytest.approx(
         0.3 * 3e-2
     )

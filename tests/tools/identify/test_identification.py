@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from conformance import conforms
 from paper_structures import (
     block,
     ground,
@@ -66,6 +67,11 @@ def test_a_block_of_another_integrator_has_its_restitution():
     case = replace(found, impact_law=ImpactLaw("value", 0.97))
     read = rocking(case, time + 7.0, theta)
     assert ("loss", "-") not in read.estimates
+    estimate = read.estimates["restitution", "-"]
+    conforms(
+        "identification", "restitution of a block from noisy tilts", e, estimate.value, 1e-3,
+        "independent program", "Housner's block by scipy.integrate.solve_ivp",
+    )  # fmt: skip
     assert held(e, read.estimates["restitution", "-"])
     assert (
         read.estimates["restitution", "-"].high - read.estimates["restitution", "-"].low

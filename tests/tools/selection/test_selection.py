@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conformance import conforms
 from paper_structures import known
 
 from rpscli.errors import RecordError
@@ -88,7 +89,7 @@ def test_against_all_choices_of_random_spectra(
 def test_moments_against_all_choices():
     """Mean and deviation of the logarithm, three of ten."""
     rng = np.random.default_rng(3)
-    for _ in range(8):
+    for number in range(8):
         spectra = np.exp(rng.normal(0.0, 0.5, (10, 21)))
         wanted, deviation = np.exp(rng.normal(0.0, 0.1, 21)), np.full(20, 0.4)
         sets = admissible(3, [*range(10)], [*range(10)], 1)
@@ -101,7 +102,11 @@ def test_moments_against_all_choices():
         costs = [float(np.sqrt(error.mean())) for error in errors]
         pool = Pool(spectra, np.ones(10), np.arange(10), np.arange(10))
         found, _ = best_choice(pool, Goal(wanted, deviation), 3, 1)
-        assert costs[sets.index(found)] == pytest.approx(min(costs), rel=1e-9)
+        conforms(
+            "selection of records", f"misfit of mean and deviation, pool {number + 1}",
+            min(costs), costs[sets.index(found)], 1e-9 * min(costs),
+            "identity", "least of all choices of three of ten",
+        )  # fmt: skip
 
 
 @pytest.mark.evidence("selection of records", "exact")
@@ -131,7 +136,10 @@ def test_against_all_choices_of_motions():
     for one, place in zip(selection.chosen, best, strict=True):
         assert one.factor == pytest.approx(selection.common * own[place], rel=2e-3)
     # The verdict is from four times as many periods.
-    assert selection.misfit == pytest.approx(min(costs), abs=5e-3)
+    conforms(
+        "selection of records", "misfit of three of nine motions, EN 1998-1", min(costs),
+        selection.misfit, 5e-3, "identity", "all choices with 2,000 common factors",
+    )  # fmt: skip
     assert selection.least_ratio >= 0.9
     mean_pga = np.mean([one.factor * one.motions[0].pga for one in selection.chosen])
     assert mean_pga >= wanted[0]
@@ -146,7 +154,11 @@ def test_a_common_factor_is_what_fits_the_mean():
     tried = [
         misfit(c * selection.mean, selection.wanted) for c in np.linspace(0.98, 1.02, 41)
     ]
-    assert selection.misfit == pytest.approx(float(min(tried)), rel=1e-4)
+    least = float(min(tried))
+    conforms(
+        "selection of records", "misfit by the common factor", least, selection.misfit,
+        1e-4 * least, "identity", "least of 41 factors beside it",
+    )  # fmt: skip
     assert not selection.rules
 
 
