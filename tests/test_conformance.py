@@ -100,6 +100,7 @@ def test_what_conforms_is_recorded(own_rows):
     (row,) = own_rows
     assert (row["expected"], row["computed"], row["share"]) == (2.0, 2.05, 0.5)
     assert row["test"].endswith("::test_what_conforms_is_recorded")
+    assert row["count"] == 3
     conforms("risk", "fine", 1.0, 1.0 + 1e-13, 1e-12, *CLOSED)
     assert own_rows[1]["computed"] == 1.0000000000001
     with pytest.raises(ValueError, match="'fine' is named twice"):
@@ -135,8 +136,8 @@ def test_words_that_are_not_known(own_rows, words):
 
 ROW = {
     "capability": "risk", "quantity": "rate", "expected": 2.0, "computed": 2.01,
-    "tolerance": 0.1, "share": 0.1, "authority": "closed form", "source": "made here",
-    "test": "t",
+    "tolerance": 0.1, "share": 0.1, "count": 1, "authority": "closed form",
+    "source": "made here", "test": "t",
 }  # fmt: skip
 
 
@@ -155,6 +156,13 @@ ROW = {
 )
 def test_what_moves_or_vanishes_is_told(now, told):
     assert differences([ROW], [ROW | now]) == told
+
+
+def test_another_number_of_an_array_may_be_the_worst():
+    curve = ROW | {"count": 9}
+    assert differences([curve], [curve | {"expected": 7.0, "tolerance": 0.4}]) == []
+    assert differences([curve], [curve | {"share": 0.5}]) != []
+    assert differences([curve], [curve | {"count": 8}]) == ["rate: count is 8, was 9"]
 
 
 def test_rounding_may_use_all_of_its_tolerance():

@@ -17,7 +17,10 @@ DATA = Path(__file__).parents[1] / "conformance.json"
 
 @dataclass(frozen=True)
 class Row:
-    """What is expected of a quantity, by which authority, and what the tests found."""
+    """What is expected of a quantity, by which authority, and what the tests found.
+
+    Of a curve, which has a `count` of numbers, it is the one that uses most of its tolerance.
+    """
 
     capability: str
     quantity: str
@@ -25,6 +28,7 @@ class Row:
     computed: float
     tolerance: float
     share: float
+    count: int
     authority: str
     source: str
     test: str
