@@ -227,6 +227,7 @@ def oracle_devices(structure):
     def other(device):
         if isinstance(device, Tendon):
             return oracle_kinds.Tendon(structure.columns, *astuple(device))
-        return ORACLE_KINDS[type(device)](*astuple(device))
+        law = [number for number in astuple(device) if not isinstance(number, tuple)]
+        return ORACLE_KINDS[type(device)](*law)  # without its places
 
     return tuple(map(other, structure.devices))

@@ -51,6 +51,7 @@ OBJECTS = {
     "Study": lambda: rpscli.load_study(STUDY),
     "StudyResult": study,
     "Superstructure": lambda: STRUCTURE.superstructure,
+    "Twist": lambda: rpscli.Twist(factors=(1.0, 1.02)),
     "TimeHistoryResult": history,
     "TimeHistorySettings": lambda: history().settings,
     "fixed_base_floor_spectra": lambda: rpscli.fixed_base_floor_spectra(history()),
@@ -61,7 +62,8 @@ OBJECTS = {
 
 OTHER = {
     "demand", "figures", "load_case", "load_components", "load_record", "load_study", "modal",
-    "plugins", "pushover", "time_history", "profile_stiffnesses", "table", "__version__",
+    "plugins", "pushover", "time_history", "twist_history", "profile_stiffnesses", "table",
+    "__version__",
 }  # fmt: skip
 """They give objects of the classes above, texts, or an array that nobody else knows."""
 

@@ -87,7 +87,7 @@ def test_closed_and_without_null():
         (q.unit in KINDS and q.unit, q.whole or q.from_below, q.from_below)
         for q in LIMITED
     }
-    assert len(sections) == 20 + len(rules)
+    assert len(sections) == 23 + len(rules)
     assert all(section["additionalProperties"] is False for section in sections)
     assert None not in [
         item for item in walk(SCHEMA) if not isinstance(item, dict | list)
