@@ -244,7 +244,11 @@ def observe(s: Record, columns: Record) -> None:
     """Raise the largest demands by the end of the step, and by peaks within it."""
     now = s.interval * s.dt + s.time
     s.max_twist = max(s.max_twist, abs(s.way[2]))
-    s.max_u = max(s.max_u, length(s.way[0], s.way[1]))
+    far = length(s.way[0], s.way[1])
+    left = s.way[0] * s.rate[0] + s.way[1] * s.rate[1]
+    if s.leaving > 0.0 and left < 0.0 and s.h > 0.0:
+        far = max(far, peak_within(s.away, s.leaving, far, left, s.h))
+    s.max_u = max(s.max_u, far)
     s.max_shear = max(s.max_shear, length(s.V[0], s.V[1]))
     for i in range(columns.shape[0]):
         c = columns[i]

@@ -106,6 +106,8 @@ SLAB = (
     Field("power", "4", "W", "mean of the step: input, damped, of pivots, of dampers"),
     Field("flowed", "4", "J", "the same, so far"),
     *fields_of("", "J", lost="at rest", lost_in_passes="near upright"),
+    *fields_of("", "m", away="|u| of the centre at the start of the step"),
+    *fields_of("", "m2/s", leaving="u.u' of the centre there"),
     *fields_of("", "rad", max_twist="largest |psi|"),
     *fields_of("", "m", max_u="largest |u| of the centre"),
     *fields_of("", "N", max_shear="largest resultant of V"),

@@ -92,6 +92,8 @@ def renew(
     find(s, columns, modes, dampers, 0.0)
     for axis in range(3):
         s.bend[axis] = s.new_bend[axis]
+    s.away = math.sqrt(s.way[0] * s.way[0] + s.way[1] * s.way[1])
+    s.leaving = s.way[0] * s.rate[0] + s.way[1] * s.rate[1]
     for i in range(columns.shape[0]):
         c = columns[i]
         c.away = math.sqrt(c.u_x * c.u_x + c.u_y * c.u_y)
