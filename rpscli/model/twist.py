@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
 from rpscli.errors import require_fields, told
 
-if TYPE_CHECKING:
-    from rpscli.model.podium import PodiumStructure
+Podium = Any
+"""`PodiumStructure`, which imports this."""
 
 FOLLOWED = frozenset({"viscous", "friction"})
 """Kinds of devices that a slab that turns may have."""
@@ -117,14 +117,14 @@ class Twist:
             drawn[beyond] = draw.standard_normal(int(beyond.sum()))
         return np.asarray(1.0 + self.scatter * drawn)
 
-    def refuse(self, structure: PodiumStructure) -> None:
+    def refuse(self, structure: Podium) -> None:
         """Refuse a structure whose slab is not followed as it turns: raises ValueError."""
         for why in refusals(structure):
             raise ValueError(f"twist {why}")
         self.factors_of(len(structure.rows) * len(structure.rows_y))
 
 
-def refusals(structure: PodiumStructure) -> Iterator[str]:  # noqa: C901 -- a reason a line
+def refusals(structure: Podium) -> Iterator[str]:  # noqa: C901 -- a reason a line
     """Reasons why a slab cannot be followed as it turns; none if it can."""
     above = structure.superstructure
     law = structure.impact_law.kind
