@@ -27,6 +27,9 @@ QUICK = "tests/test_readme.py::test_commands_run_in_their_order"
 LONG = "tests/test_readme.py::test_commands_of_a_page_run"
 GALLERY = "tests/test_readme.py::test_the_gallery_shows_what_its_commands_give"
 GRANITE = "tests/sweep/test_granite.py::test_the_readme_shows_what_its_commands_give"
+PULLED = (
+    "tests/tools/identify/test_pull_back.py::test_the_page_shows_what_its_command_gives"
+)
 PLUGINS = "tests/commands/test_plugins.py::test_the_example_is_installed_by_pip"
 PIPELINE = "tests/test_readme.py::test_the_job_for_a_pipeline_runs"
 BENCHMARKS = "tests/benchmarks/test_installed.py::test_a_little_of_the_benchmark_runs"
@@ -39,6 +42,8 @@ PAGES = {
     "rpscli/GUIDE.md": (QUICK, LONG),
     "cases/README.md": (GALLERY,),
     "cases/granite/README.md": (GRANITE,),
+    "cases/pull_back/README.md": (PULLED,),
+    "cases/pull_back/sochi.yaml": (PULLED,),
     "tests/example_package/README.md": (PLUGINS,),
     ".github/workflows/acceptance.yml": (PIPELINE,),
 } | dict.fromkeys(

@@ -24,6 +24,7 @@ PAGES = {
     "CHANGELOG.md": "changelog",
     "cases/compdyn2021/README.md": "cases/compdyn2021",
     "cases/granite/README.md": "cases/granite",
+    "cases/pull_back/README.md": "cases/pull_back",
     "cases/studies/contact/README.md": "cases/contact",
     "cases/studies/impact_law/README.md": "cases/impact_law",
     **{

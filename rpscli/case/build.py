@@ -140,6 +140,7 @@ def built(bearing: Bearing, file: CaseFile) -> PodiumStructure:
         devices=tuple(map(_device, podium.devices)),
         columns=podium.columns or 1,
         friction=podium.friction,
+        wind=podium.wind,
         rows=rows_of(plan),
         rows_y=rows_of(plan and plan.y),
         superstructure_y=None if across is None else _building(across, at_uplift),

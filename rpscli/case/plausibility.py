@@ -17,7 +17,7 @@ import numpy as np
 from rpscli.case.build import each_storey
 from rpscli.case.schema.case_file import SuperstructureSection
 from rpscli.errors import listed
-from rpscli.model.statics import storey_strengths
+from rpscli.model.statics import storey_strengths, wind_on
 from rpscli.model.twisting import unstable_from
 
 if TYPE_CHECKING:
@@ -95,6 +95,7 @@ def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
     yield from _unsaid_ends(structure)
     yield from _pressed_arcs(structure)
     yield from _turning_slab(structure)
+    yield from _moving_wind(structure)
     bearing = structure.bearing
     building = structure.superstructure
     if (
@@ -244,6 +245,26 @@ def _turning_slab(structure: PodiumStructure) -> Iterator[Doubt]:
         " 2), unless their ends resist pivoting with a lever of some 20 mm of the weight,"
         " or dampers of 0.1 W per m/s in all stand at the corners",
         ratio,
+    )
+
+
+def _moving_wind(structure: PodiumStructure) -> Iterator[Doubt]:
+    """Wind that lifts the columns, or rolls them, and overcomes friction."""
+    wind = wind_on(structure)
+    if wind is None or not wind.moves:
+        return
+    remedy = "give the podium friction dampers, or its columns a wider flat part"
+    if wind.ratio is None:
+        yield Doubt(
+            "podium.wind moves the building, which stands on ends without a flat part and"
+            f" without friction: {remedy}"
+        )
+        return
+    yield Doubt(
+        "podium.wind is {0} times the force that moves the cap beam{1}: the wind moves the"
+        f" building; {remedy}",
+        wind.ratio,
+        f" ({1e-3 * wind.base_shear:.4g} kN over {1e-3 * wind.moving_force:.4g} kN)",
     )
 
 

@@ -97,7 +97,10 @@ def command(
         document["files"] = folder.files
     out.terminal.warn(doubts)
     limits = conditions_of(given.case.limits, "limits of the case")
-    others = chain(device_tables(structure, document), strength_tables(structure))
+    others = chain(
+        wind_table(document["wind"]), device_tables(structure, document),
+        strength_tables(structure),
+    )  # fmt: skip
     other = ["in the direction x; --direction y shows the other"]
     other *= direction == "x" and structure.superstructure_y is not None
     unknown = _unknown(structure, record)
@@ -116,9 +119,11 @@ def _of_yielding(structure: PodiumStructure) -> Iterable[str]:
 
 def _derived(structure: PodiumStructure) -> dict[str, Any]:
     """Derived quantities, those of devices and the strengths of storeys, for JSON."""
-    from rpscli.model.statics import device_consequences
+    from rpscli.model.statics import device_consequences, wind_on
 
     derived = derived_quantities(structure) | device_consequences(structure)
+    wind = wind_on(structure)
+    derived["wind"] = wind and {**wind._asdict(), "moves": wind.moves}
     for way, strengths in strengths_by_way(structure).items():
         derived[f"storey_strengths{way}"] = [each._asdict() for each in strengths]
     return derived
@@ -235,6 +240,23 @@ def _record_table(record: Mapping[str, Any]) -> Table:
         *([("in y", f"{y['name']}, {shown(y['pga'])} m/s2")] if y else []),
         ("scale", f"{record['scale']:g}"),
     ])  # fmt: skip
+
+
+def wind_table(wind: Mapping[str, Any] | None) -> Iterator[Part]:
+    """The base shear of the wind beside the force that moves the cap beam."""
+    if wind is None:
+        return
+    forces = [
+        ("base shear of the wind", "V_w", wind["base_shear"]),
+        ("uplift force at the cap beam", "W tan(alpha)", wind["uplift_force"]),
+        ("friction while columns stand upright", "", wind["friction"]),
+        ("force that moves the cap beam, with devices", "", wind["moving_force"]),
+    ]
+    rows = [(name, symbol, shown(1e-3 * value), "kN") for name, symbol, value in forces]
+    if wind["ratio"] is not None:
+        rows.append(("wind over that force", "", shown(wind["ratio"]), ""))
+    yield Table.of_texts(("wind", "symbol", "value", "unit"), rows, words=2)
+    yield "the wind MOVES the building" if wind["moves"] else "the wind moves nothing"
 
 
 def device_tables(

@@ -74,6 +74,9 @@ class PodiumStructure(Shown):
         Section and material of a column; None where it is not designed.
     twist
         How the slab turns about the vertical; None where that is not computed.
+    wind
+        Base shear of the building under the wind [N], which statics alone ask for; None
+        where it is not known.
 
     Raises
     ------
@@ -108,6 +111,7 @@ class PodiumStructure(Shown):
     contact: Contact = field(default_factory=Contact)
     column: ColumnDesign | None = None
     twist: Twist | None = None
+    wind: float | None = None
     bed: Bed | None = field(init=False)
     """Compliant full contact; None on rigid ends."""
 
@@ -121,6 +125,8 @@ class PodiumStructure(Shown):
             )
         if self.friction is not None and self.friction < 0.0:
             raise ValueError(f"friction = {told(self.friction)} must be >= 0, or None")
+        if self.wind is not None and not is_size(self.wind):
+            raise ValueError(f"wind = {told(self.wind)} must be > 0 and finite, or None")
         self._refuse_buildings()
         for name, rows in (("rows", self.rows), ("rows_y", self.rows_y)):
             if rows and (len(rows) < 2 or not is_size(max(rows) - min(rows))):

@@ -122,6 +122,35 @@ def uplift_acceleration(structure: PodiumStructure) -> float:
     return uplift_force(structure) / structure.restoring_mass
 
 
+class Wind(NamedTuple):
+    """The wind beside what keeps the cap beam in its place, all of it quasi-static."""
+
+    base_shear: float  # V_w [N]
+    uplift_force: float  # W tan(alpha); 0 on ends without a flat part [N]
+    friction: float  # Of all kinds, while the columns stand upright [N]
+    moving_force: float  # At the cap beam, with all devices [N]
+    ratio: float | None  # V_w over it; None where nothing keeps the cap beam in its place
+
+    @property
+    def moves(self) -> bool:
+        """True if the wind moves the building."""
+        return self.ratio is None or self.ratio > NEARLY
+
+
+def wind_on(structure: PodiumStructure) -> Wind | None:
+    """What the base shear of the wind does; None where it is not known.
+
+    The wind pushes the building and not the masses of the bearings' storey, so that it is
+    the force at the cap beam, to be compared with W tan(alpha) rather than with V_st.
+    """
+    if structure.wind is None:
+        return None
+    moving = uplift_force(structure)
+    held = float(friction_force(structure, np.zeros(1))[0])
+    ratio = structure.wind / moving if moving > 0.0 else None
+    return Wind(structure.wind, structure.uplift_force, held, moving, ratio)
+
+
 def largest_recentring_friction(structure: PodiumStructure, rotation: float) -> float:
     """The largest friction from which the structure still comes
     back from a rotation [N].

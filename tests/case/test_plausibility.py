@@ -55,6 +55,10 @@ SLIPS = [
     ("  damping", "  yield: {shears: [300 kN, 2 MN, 2 MN]}\n  damping",
      ["yield before columns lift, at 0.3187 of their shear at uplift (storey 1)"]),
     ("  cap_beam_mass_ratio", "  friction: 5\n  cap_beam_mass_ratio", ["friction = 5 is"]),
+    # W = 640 t (1 + 1/3 + 1/60) g = 8.473 MN, and tan(alpha) = 0.15
+    ("  cap_beam_mass_ratio", "  wind: 1.2 MN\n  cap_beam_mass_ratio", []),
+    ("  cap_beam_mass_ratio", "  wind: 1.5 MN\n  cap_beam_mass_ratio",
+     ["podium.wind is 1.18 times the force that moves the cap beam (1500 kN over 1271 kN)"]),
     # 874.7 t on four columns: p_0^2 = N E*/(pi L r) of (16.4), with E* = E/1.92
     ("  cap_beam_mass_ratio",
      "  columns: 4\n  column: {section: square, edge_length: 0.4, modulus: 30 GPa,"  # noqa: ISC004

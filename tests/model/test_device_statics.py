@@ -37,6 +37,7 @@ from rpscli.model.statics import (
     returns,
     secant_period,
     uplift_force,
+    wind_on,
 )
 from rpscli.records.ground_motion import GroundMotion
 
@@ -263,6 +264,38 @@ def test_the_secant_period_of_flat_ends(ratio):
         "devices", "secant period [s], flat ends and a spring", wanted / math.sqrt(2.0),
         secant_period(held, rotation), 1e-3 * wanted, "closed form", "twice the stiffness",
     )  # fmt: skip
+
+
+def test_wind_moves_what_neither_weight_nor_friction_holds():
+    """100 t on flat ends of tan(alpha) = .03 resist 29.4 kN, and 20 kN of friction more."""
+    bearing = Bearing(1.5, 0.03, 0.03, 0.0)
+    structure = PodiumStructure(bearing, 2e4, 9e4, None, gravity=9.8, columns=4)
+    weight = 9.8 * (9e4 + 0.5 * 2e4)  # a column is held at its ends: half of it counts
+    assert wind_on(structure) is None
+    for devices, held in ((), 0.0), ((FrictionDamper(2e4), ViscousDamper(1e6)), 2e4):
+        most = 0.03 * weight + held
+        for part, moves in (0.999, False), (1.001, True):
+            seen = replace(structure, devices=devices, wind=part * most)
+            wind = known(wind_on(seen))
+            assert wind.moving_force == pytest.approx(most, rel=1e-12)
+            assert wind.friction == pytest.approx(held, abs=1e-9)
+            assert wind.ratio == pytest.approx(part, rel=1e-12)
+            assert wind.moves is moves
+
+
+def test_wind_moves_ends_without_a_flat_part_but_for_friction():
+    free = replace(on_spheres(0.01), devices=(), wind=1.0)
+    wind = known(wind_on(free))
+    assert (wind.ratio, wind.moving_force, wind.moves) == (None, 0.0, True)
+    held = known(wind_on(replace(on_spheres(0.01), wind=0.5e-2 * free.weight)))
+    assert held.ratio == pytest.approx(0.5, rel=1e-12)
+    assert not held.moves
+
+
+@pytest.mark.parametrize("wind", [0.0, -1.0, math.nan, math.inf])
+def test_wind_is_a_force(wind):
+    with pytest.raises(ValueError, match="wind = "):
+        replace(podium(2, 0.15, 0.5), wind=wind)
 
 
 def on_spheres(friction):

@@ -403,6 +403,9 @@ class PodiumSection(Section):
     ] = None
     """coefficient of friction at both ends of the columns; the
     friction demand is then judged"""
+    wind: Annotated[float | None, Quantity("N", symbol="V_w, base shear", above=0)] = None
+    """V_w, base shear of the building under the wind, with the factors of the code; `rps
+    check` compares it with the force that moves the cap beam"""
     plan: PlanSection | None = None
     """where columns stand; gives the overturning moment in their forces, with
     superstructure.storey_height"""

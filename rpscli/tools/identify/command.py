@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rpscli.commands.inputs import case_heading, read_case
+from rpscli.commands.inputs import CaseInput, case_heading, read_case
 from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal, announce_compilation, passing_time
 from rpscli.errors import AnalysisError, RecordError, UsageError, beginning, listed
 from rpscli.report.files import heading
 from rpscli.report.table import Heading, Part, Table, shown
 from rpscli.titled_table import TitledTable
+from rpscli.tools.identify.pull_options import PullRequest, pull_options
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -29,6 +30,8 @@ TESTS = (
     "release",
     "earthquake",
 )  # of `identify`, which is slow to import
+PULL_BACK = "pull-back"
+"""The test that has no record, in place of a file."""
 FEWEST = 20
 """Samples of a measurement."""
 LARGEST = 1e15
@@ -37,8 +40,10 @@ LARGEST = 1e15
 
 @click.command("identify")
 @options.case_options
-@click.argument("data", metavar="DATA.csv", type=options.FILE)
-@click.argument("test", metavar="|".join(TESTS), type=click.Choice(TESTS))
+@click.argument("data", metavar=f"DATA.csv|{PULL_BACK}", type=options.FILE)
+@click.argument(
+    "test", metavar=f"[{'|'.join(TESTS)}]", type=click.Choice(TESTS), required=False
+)
 @click.option(
     "--from",
     "first",
@@ -53,13 +58,15 @@ LARGEST = 1e15
     metavar="S",
     help="Ignore samples after this time.",
 )
+@pull_options
 @options.terminal_options
 def command(
     request: options.CaseRequest,
     data: str,
-    test: str,
+    test: str | None,
     first: float | None,
     last: float | None,
+    pull: PullRequest,
     terminal: Terminal,
 ) -> None:
     """Identify properties of CASE from DATA.csv, measured on the
@@ -70,12 +77,29 @@ def command(
     loss at impacts, and the lever of a rolling_resistance in the case. Before uplift the
     period and the damping follow from a `floor_acceleration`: ambient vibration, the
     release of a pull, or an earthquake with `ground_acceleration` as well.
+
+    CASE pull-back, without a file, gives the slenderness from two numbers: how far the
+    cap beam was pushed before it was let go, and when it was at rest. Its interval is
+    that over the ranges of what is not known, and no probability.
     """
     given = read_case(request, terminal)
+    test = _test_of(data, test, pull, parts=(first, last) != (None, None))
+    if test == PULL_BACK:
+        from rpscli.tools.identify.pull_report import told_pull_back
+
+        told_pull_back(given, pull, terminal)
+        return
+    columns = measured(data, test, first, last)
+    _tell_of_record(given, data, test, columns, terminal)
+
+
+def _tell_of_record(
+    given: CaseInput, data: str, test: str, columns: Columns, terminal: Terminal
+) -> None:
+    """Find what a record says, and tell it."""
     from rpscli.tools.identify.estimates import LEVEL
     from rpscli.tools.identify.identification import identified
 
-    columns = measured(data, test, first, last)
     announce_compilation(terminal)
     with passing_time("fitting", terminal):
         try:
@@ -94,6 +118,22 @@ def command(
     tables = [Heading(given.case.title), *_tables(found), found.remarks]
     fault = AnalysisError(f"{data}: {found.fault}") if found.fault else None
     terminal.finish(document, tables, fault)
+
+
+def _test_of(data: str, test: str | None, pull: PullRequest, *, parts: bool) -> str:
+    """The test that the words name; refuse options that go with another one."""
+    if data == PULL_BACK and test is None:
+        if parts:
+            raise UsageError(f"{PULL_BACK}: --from and --to go with a file")
+        return PULL_BACK
+    if test is None:
+        raise UsageError(f"{data}: say behind it what was measured: {listed(TESTS)}")
+    if pull != PullRequest():
+        raise UsageError(
+            f"{test}: --displacement, --rest, --within and --range go with {PULL_BACK}, in"
+            " place of a file"
+        )
+    return test
 
 
 def _of_fit(found: Identified) -> dict[str, Any]:
