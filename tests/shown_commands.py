@@ -27,6 +27,9 @@ QUICK = "tests/test_readme.py::test_commands_run_in_their_order"
 LONG = "tests/test_readme.py::test_commands_of_a_page_run"
 GALLERY = "tests/test_readme.py::test_the_gallery_shows_what_its_commands_give"
 GRANITE = "tests/sweep/test_granite.py::test_the_readme_shows_what_its_commands_give"
+TUTORIALS = (
+    "tests/test_tutorials.py::test_commands_of_tutorials_run_and_print_what_is_shown"
+)
 PULLED = (
     "tests/tools/identify/test_pull_back.py::test_the_page_shows_what_its_command_gives"
 )
@@ -42,6 +45,8 @@ PAGES = {
     "rpscli/GUIDE.md": (QUICK, LONG),
     "cases/README.md": (GALLERY,),
     "cases/granite/README.md": (GRANITE,),
+    "rpscli/tutorials/figure.md": (TUTORIALS,),
+    "rpscli/tutorials/verdict.md": (TUTORIALS,),
     "cases/pull_back/README.md": (PULLED,),
     "cases/pull_back/sochi.yaml": (PULLED,),
     "tests/example_package/README.md": (PLUGINS,),
@@ -64,6 +69,7 @@ PAGES = {
         "cases/studies/joints_both/README.md",
         "cases/studies/impact_law/README.md",
         "cases/studies/product.yaml",
+        ".github/SUPPORT.md",
         ".github/workflows/pages.yml",
         ".github/workflows/tests.yml",
         ".ci/conda/recipe.yaml",

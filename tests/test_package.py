@@ -1,5 +1,6 @@
 """What the package says of itself: requirements, links, and what a release needs."""
 
+import json
 import re
 import runpy
 import subprocess
@@ -109,3 +110,68 @@ def test_links_of_the_readme_lead_to_the_repository(monkeypatch):
             rf"^{re.escape(source)}/(blob|raw)/v{re.escape(VERSION)}/", "", link
         )
         assert here == link or (ROOT / here.partition("#")[0]).exists()
+<<<<<<< HEAD
+=======
+
+
+def test_the_table_is_what_the_marks_say():
+    text = DOCUMENT.read_text(encoding="utf-8")
+    assert with_table(text) == text, "write it again: cd tests; python -m evidence"
+
+
+def test_codemeta_is_what_the_citation_says():
+    space = runpy.run_path(str(ROOT / ".github/codemeta.py"))
+    citation = yaml.safe_load(space["CITATION"].read_text("utf-8"))
+    made = space["codemeta"](citation)
+    assert space["PLACE"].read_text("utf-8") == made, "write it: .github/codemeta.py"
+    person = {
+        "given-names": "Ada",
+        "family-names": "Byron",
+        "orcid": "https://orcid.org/0",
+    }
+    dated = {
+        **citation,
+        "authors": [person],
+        "doi": "10.1/2",
+        "date-released": "2026-12-01",
+    }
+    told = json.loads(space["codemeta"](dated))
+    assert told["author"] == [
+        {
+            "@type": "Person",
+            "@id": "https://orcid.org/0",
+            "givenName": "Ada",
+            "familyName": "Byron",
+        }
+    ]
+    assert (told["identifier"], told["datePublished"]) == (
+        "https://doi.org/10.1/2",
+        "2026-12-01",
+    )
+    assert (told["version"], told["name"]) == (VERSION, citation["title"])
+
+
+def test_forms_ask_for_what_an_answer_needs():
+    """Each kind of report, as GitHub reads it; what cannot be answered without is required."""
+    folder = ROOT / ".github/ISSUE_TEMPLATE"
+    required = {
+        "wrong_number": {"case", "command", "expected", "doctor"},
+        "crash": {"command", "case", "doctor"},
+        "question": {"question"},
+    }
+    forms = {
+        path.stem: yaml.safe_load(path.read_text("utf-8"))
+        for path in folder.glob("*.yml")
+    }
+    config = forms.pop("config")
+    assert config["blank_issues_enabled"] is False
+    assert {*forms} == {*required}
+    for name, form in forms.items():
+        assert {"name", "description", "body"} <= {*form}
+        fields = [each for each in form["body"] if each["type"] != "markdown"]
+        assert len({each["id"] for each in fields}) == len(fields)
+        asked = {f["id"] for f in fields if f.get("validations", {}).get("required")}
+        assert asked == required[name]
+    text = (ROOT / ".github/PULL_REQUEST_TEMPLATE.md").read_text("utf-8")
+    assert "How it is shown to be right" in text
+>>>>>>> 094af3a2 (Two tutorials, forms for reports, governance, codemeta; the paper's scope is that of the theory; sp14 says which amendments it has not)

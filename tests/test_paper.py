@@ -23,7 +23,7 @@ from paper_structures import (
 )
 from physics.test_free_rocking import SINE, least_amplitude
 from reproduction.test_histories import PRINTED
-from shown_commands import ROOT
+from shown_commands import ROOT, THEORY, table
 
 import rpscli
 from rpscli.model.bearing import Bearing
@@ -55,6 +55,44 @@ NUMBERS = {
     "documented": ("in 90 % of the half", "44 motions for 576 buildings"),
 }  # fmt: skip
 """The phrases that hold numbers, by the test that computes them."""
+
+
+SCOPE = {
+    "Columns are rigid": "columns, beam and ground are rigid",
+    "and alike": "all columns alike",
+    "friction prevents sliding": "columns never slide",
+    "contact is never lost": "contact is never lost",
+    "the beam does not turn about the vertical": "the beam does not turn about the vertical",
+    "elastic unless its storeys are given strengths": "linear building",
+    "its floors ride on the beam unless they are put on springs": "floors ride on the beam",
+}
+"""What the paper says of its scope, and where the table of assumptions of the theory has it."""
+
+REMOVED = {
+    "elastic": "superstructure.yield",
+    "its floors": "superstructure.vertical_period",
+}
+"""Assumptions that a key removes, which the paper makes with "unless"."""
+
+
+def test_the_scope_is_that_of_the_theory():
+    """No claim that the theory does not make, and none that a key has made untrue."""
+    heads, *rows = table(THEORY, "**Assumptions, what each one hides")
+    assert heads[0] == "assumed"
+    scope = TEXT.partition("The main trade-off is scope. ")[2].partition(" The theory")[0]
+    hides = {row[0]: row[1] for row in rows}
+    for claim, assumed in SCOPE.items():
+        assert scope.count(claim) == 1, claim
+        (name,) = (each for each in hides if each.startswith(assumed))
+        keys = [key for word, key in REMOVED.items() if claim.startswith(word)]
+        assert [key for key in keys if f"`{key}` removes it" not in hides[name]] == []
+        assert ("unless" in claim) == bool(keys) == (" removes it" in hides[name])
+    left = scope
+    for claim in SCOPE:
+        left = left.replace(claim, "")
+    words = {"and", "the", "building", "is", "a", "shear"}
+    assert set(re.findall(r"[a-z]+", left.lower())) <= words
+    assert "linear shear" not in TEXT
 
 
 def test_form():

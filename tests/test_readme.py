@@ -38,7 +38,9 @@ DOCUMENTS = [
     docs.CONFORMANCE,
     docs.ERRATA,
     docs.PACKAGE / "DECISIONS.md",
+    *sorted((docs.PACKAGE / "tutorials").glob("*.md")),
     docs.ROOT / ".github" / "CONTRIBUTING.md",
+    docs.ROOT / ".github" / "SUPPORT.md",
     docs.ROOT / "CHANGELOG.md",
     *sorted((docs.ROOT / "cases").rglob("README.md")),
 ]

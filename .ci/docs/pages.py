@@ -16,6 +16,8 @@ PAGES = {
     "README.md": "index",
     "cases/README.md": "gallery",
     "rpscli/GUIDE.md": "guide",
+    "rpscli/tutorials/figure.md": "tutorials/figure",
+    "rpscli/tutorials/verdict.md": "tutorials/verdict",
     "rpscli/THEORY.md": "theory",
     "rpscli/VERIFICATION.md": "verification",
     "rpscli/CONFORMANCE.md": "conformance",

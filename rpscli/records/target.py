@@ -350,7 +350,10 @@ def _sp14(rest: str, source: str) -> TargetSpectrum:
         source,
         shape,
         _velocity_of(shape),
-        edition="SP 14.13330.2018 without its amendments, 5.5 and 5.6",
+        edition=(
+            "SP 14.13330.2018, 5.5 and 5.6, as first published: without amendment No. 1"
+            " (Изменение № 1) and all later ones"
+        ),
         parameters=_in_words(A=A),
         checked=(
             f"{NOT_VERIFIED}: from memory; supply the spectrum as a CSV file where it"
