@@ -80,10 +80,8 @@ def command(words: tuple[str, ...], terminal: Terminal) -> None:
         return
     report = [*_reports(word, everything=False, options=False)]
     meant = [
-        ExplainEntry(
-            "words", {"word": name, "meaning": meaning}, (Heading(name), meaning)
-        )
-        for name, meaning in glossary()
+        _word(name, meaning, russian)
+        for name, meaning, russian in glossary_rows()
         if _as_printed(word) in _names(name)
     ]
     # A row of a table may have two results: "uplifts, impacts".
@@ -124,11 +122,28 @@ def _listing(offers: list[Offer], *, everything: bool) -> Iterator[Part]:
         )
 
 
+def _word(name: str, meaning: str, russian: str) -> ExplainEntry:
+    """A word of the glossary."""
+    said = {"word": name, "meaning": meaning, "russian": russian or None}
+    parts = (Heading(name), meaning, *[f"in Russian: {russian}"] * bool(russian))
+    return ExplainEntry("words", said, parts)
+
+
 def glossary() -> list[tuple[str, str]]:
     """Words and meanings of the glossary."""
+    return [(name, meaning) for name, meaning, _ in glossary_rows()]
+
+
+def glossary_rows() -> list[tuple[str, str, str]]:
+    """Words, meanings, and the Russian words where there are some."""
     text = resources.files("rpscli").joinpath("GLOSSARY.md").read_text(encoding="utf-8")
-    rows = re.findall(r"^\| (.+?) \| (.+) \|$", text, re.MULTILINE)
-    return [(name.replace("`", ""), meaning) for name, meaning in rows if name != "word"]
+    cell = r"((?:[^|\n]|\|(?=\S))+?)"
+    rows = re.findall(rf"^\| {cell} \| {cell}(?: \| {cell})? \|$", text, re.MULTILINE)
+    return [
+        (name.replace("`", ""), meaning, "" if russian == "-" else russian)
+        for name, meaning, russian in rows
+        if name != "word"
+    ]
 
 
 def _names(entry: str) -> list[str]:

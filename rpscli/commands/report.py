@@ -195,7 +195,9 @@ def _write(
     }
     made = datetime.now().astimezone().strftime("%d %B %Y, %H:%M %Z")
     subtitle = f"{done.subtitle}. Made by rps {VERSION} on {made}."
-    content = page(done.title, subtitle, done.sections, name, signed)
+    content = page(
+        done.title, subtitle, done.sections, name, signed, done.signed.language
+    )
     write_whole({file: content})
     blocks = (block for section in done.sections for block in section.blocks)
     shown = (each.files.values() for each in blocks if isinstance(each, Picture))

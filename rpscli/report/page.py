@@ -5,14 +5,15 @@ from __future__ import annotations
 import base64
 import io
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from html import escape
 from importlib import resources
 from unicodedata import category
 
 from rpscli.report.figures.look import Look
 from rpscli.report.files import Drawing, undrawn
+from rpscli.report.russian import NOTE, in_russian
 from rpscli.report.table import Table
 
 
@@ -87,7 +88,7 @@ def pictures(files: Iterable[tuple[str, object]]) -> dict[str, dict[str, Drawing
     return found
 
 
-def figures(shown: Sequence[Picture], room: int) -> list[Markup]:
+def figures(shown: Sequence[Picture], room: int, word: str = "Figure") -> list[Markup]:
     """Pictures above captions; the largest drawings become images until
     there is room [letters].
     """
@@ -103,7 +104,7 @@ def figures(shown: Sequence[Picture], room: int) -> list[Markup]:
         element(
             "figure",
             element("div", each, class_="wide"),
-            element("figcaption", element("b", f"Figure {number}. "), of.caption),
+            element("figcaption", element("b", f"{word} {number}. "), of.caption),
         )
         for number, (each, of) in enumerate(zip(drawn, shown, strict=True), 1)
     ]
@@ -183,19 +184,51 @@ class ReportSection:
     blocks: Sequence[Block]
 
 
+Tell = Callable[[str], str]
+LANGUAGES: dict[str, Tell] = {"en": str, "ru": in_russian}
+"""What is told of a text, by the language of a page."""
+
+
+def _told(section: ReportSection, tell: Tell) -> ReportSection:
+    """A section in the words of a language; commands, files and numbers as they are."""
+    return ReportSection(
+        tell(section.title), [_block_told(b, tell) for b in section.blocks]
+    )
+
+
+def _block_told(block: Block, tell: Tell) -> Block:
+    match block:
+        case Table():
+            words = block.words
+            rows = [(*map(tell, row[:words]), *row[words:]) for row in block.rows]
+            heads = [*map(tell, block.heads)]
+            return Table.of_texts(heads, rows, words=words, keys=block.keys)
+        case Picture():
+            return replace(block, caption=tell(block.caption))
+        case Notice():
+            return Notice(tell(block))
+        case Listing() | Attachment():
+            return block
+    return tell(block)
+
+
 def page(
     title: str,
     subtitle: str,
     sections: Sequence[ReportSection],
     name: str,
     signed: Mapping[str, str | None] | None = None,
+    language: str = "en",
 ) -> bytes:
     """The file of a page: sections that hold something; by `name` a
     later page knows its own.
     """
+    tell = LANGUAGES[language]
     kept = [section for section in sections if section.blocks]
+    if language != "en":
+        kept = [_told(section, tell) for section in kept]
     shown = [block for s in kept for block in s.blocks if isinstance(block, Picture)]
-    drawn = iter(figures(shown, FOR_FIGURES))
+    drawn = iter(figures(shown, FOR_FIGURES, tell("Figure")))
     links = []
     written = []
     for place, section in enumerate(kept, 1):
@@ -207,11 +240,12 @@ def page(
         "header",
         element("h1", title),
         element("p", subtitle),
-        _signatures(signed or {}),
+        element("p", NOTE) if language == "ru" else None,
+        _signatures(signed or {}, tell),
     )
     contents = element("nav", element("ol", links))
     body = element("body", header, contents, element("main", written))
-    root = element("html", _head(title, name), body, lang="en")
+    root = element("html", _head(title, name), body, lang=language)
     return f"<!DOCTYPE html>\n{root}\n".encode("utf-8", "backslashreplace")
 
 
@@ -231,7 +265,7 @@ def _head(title: str, name: str) -> Markup:
     )
 
 
-def _signatures(signed: Mapping[str, str | None]) -> Markup | None:
+def _signatures(signed: Mapping[str, str | None], tell: Tell) -> Markup | None:
     """Who made and who checked the page, with room for dates and
     signatures; else on paper only.
     """
@@ -239,8 +273,8 @@ def _signatures(signed: Mapping[str, str | None]) -> Markup | None:
     for name, text in signed.items():
         wide = {"colspan": "2"} if name == "project" else {}
         cells = [element("td", text or "", **wide)]
-        cells += [] if wide else [element("td", "date, signature:")]
-        rows.append(element("tr", element("th", name), cells))
+        cells += [] if wide else [element("td", tell("date, signature:"))]
+        rows.append(element("tr", element("th", tell(name)), cells))
     of = "signed" if any(signed.values()) else "signed paper"
     return element("table", rows, class_=of) if rows else None
 

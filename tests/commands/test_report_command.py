@@ -508,3 +508,28 @@ def test_a_page_of_both_components_has_what_they_assume(workplace, page):
         "x.csv?second=y.csv&both",
         shows=["columns are taken as round", "near upright"],
     )
+
+
+def test_a_page_in_russian_has_the_same_numbers(rps, workplace):
+    words = ("report", "small.yaml", "--record", "pulse:sine?amplitude=0.3g&period=0.8")
+    rps(*words, "-o", "en.html")
+    rps(*words, "--set", "document.language=ru", "-o", "ru.html")
+    english, russian = (text_of(f"{name}.html") for name in ("en", "ru"))
+    assert "Производные величины" in russian
+    assert "критический угол наклона" in russian
+    numbers = re.compile(
+        r"\d+\.\d+(?:e[-+]\d+)?"
+    )  # of results; times of making have none
+
+    def found(text):
+        return sorted(numbers.findall(text.replace("document.language", "")))
+
+    assert found(russian) == found(english)
+    rps(
+        "check",
+        "small.yaml",
+        "--set",
+        "document.language=de",
+        exit_code=3,
+        says="must be en or ru",
+    )

@@ -512,6 +512,8 @@ class DocumentSection(Section):
     """who made the page and signs it"""
     checker: Text | None = None
     """who checks the page and signs it"""
+    language: Literal["en", "ru"] = "en"
+    """of the words of the page: en, or ru by a table of terms; numbers and formulas stay"""
 
 
 class TitledFile(Section):
