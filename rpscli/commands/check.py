@@ -97,10 +97,7 @@ def command(
         document["files"] = folder.files
     out.terminal.warn(doubts)
     limits = conditions_of(given.case.limits, "limits of the case")
-    others = chain(
-        wind_table(document["wind"]), device_tables(structure, document),
-        strength_tables(structure),
-    )  # fmt: skip
+    others = _further_tables(structure, document)
     other = ["in the direction x; --direction y shows the other"]
     other *= direction == "x" and structure.superstructure_y is not None
     unknown = _unknown(structure, record)
@@ -240,6 +237,15 @@ def _record_table(record: Mapping[str, Any]) -> Table:
         *([("in y", f"{y['name']}, {shown(y['pga'])} m/s2")] if y else []),
         ("scale", f"{record['scale']:g}"),
     ])  # fmt: skip
+
+
+def _further_tables(
+    structure: PodiumStructure, document: Mapping[str, Any]
+) -> Iterator[Part]:
+    """Of the wind, of devices, of storeys that yield."""
+    yield from wind_table(document["wind"])
+    yield from device_tables(structure, document)
+    yield from strength_tables(structure)
 
 
 def wind_table(wind: Mapping[str, Any] | None) -> Iterator[Part]:
