@@ -261,8 +261,8 @@ def _moving_wind(structure: PodiumStructure) -> Iterator[Doubt]:
         )
         return
     yield Doubt(
-        "podium.wind is {0} times the force that moves the cap beam{1}: the wind moves the"
-        f" building; {remedy}",
+        "podium.wind is {0} times the force that moves the cap beam{1}: the wind moves"
+        f" the building; {remedy}",
         wind.ratio,
         f" ({1e-3 * wind.base_shear:.4g} kN over {1e-3 * wind.moving_force:.4g} kN)",
     )

@@ -1,8 +1,8 @@
 """Words of a page in Russian: one table, by the English ones.
 
-Terms are those of Russian texts on seismic isolation. A number in a text stands as `{}`:
-numbers, symbols, formulas and units pass unchanged. A text without an entry stays English,
-and the page says so.
+Terms are those of Russian texts on seismic isolation. A number in a text stands as
+`{}`: numbers, symbols, formulas and units pass unchanged. A text without an entry stays
+English, and the page says so.
 """
 
 from __future__ import annotations
@@ -199,7 +199,9 @@ WORDS = TERMS | {
     "Displacements relative to the ground against time.": (
         "Смещения относительно основания во времени."
     ),
-    "Balance of the energy supplied by the ground.": "Баланс энергии, подведённой от основания.",
+    "Balance of the energy supplied by the ground.": (
+        "Баланс энергии, подведённой от основания."
+    ),
     "Largest storey shears on the bearings and on a fixed base.": (
         "Наибольшие поперечные силы этажей на опорах и на жёстком основании."
     ),

@@ -513,7 +513,7 @@ class DocumentSection(Section):
     checker: Text | None = None
     """who checks the page and signs it"""
     language: Literal["en", "ru"] = "en"
-    """of the words of the page: en, or ru by a table of terms; numbers and formulas stay"""
+    """words of the page: en, or ru by a table of terms; numbers and formulas stay"""
 
 
 class TitledFile(Section):
