@@ -110,13 +110,6 @@ def test_links_of_the_readme_lead_to_the_repository(monkeypatch):
             rf"^{re.escape(source)}/(blob|raw)/v{re.escape(VERSION)}/", "", link
         )
         assert here == link or (ROOT / here.partition("#")[0]).exists()
-<<<<<<< HEAD
-=======
-
-
-def test_the_table_is_what_the_marks_say():
-    text = DOCUMENT.read_text(encoding="utf-8")
-    assert with_table(text) == text, "write it again: cd tests; python -m evidence"
 
 
 def test_codemeta_is_what_the_citation_says():
@@ -174,4 +167,3 @@ def test_forms_ask_for_what_an_answer_needs():
         assert asked == required[name]
     text = (ROOT / ".github/PULL_REQUEST_TEMPLATE.md").read_text("utf-8")
     assert "How it is shown to be right" in text
->>>>>>> 094af3a2 (Two tutorials, forms for reports, governance, codemeta; the paper's scope is that of the theory; sp14 says which amendments it has not)

@@ -225,7 +225,7 @@ _UNIT = re.compile(r"^(.*?)( \[[^\]]+\]| (?:kN m|kN|kJ|mm|m/s2|m/s|MPa|MN|t|s|m)
 
 
 def in_russian(text: str) -> str:
-    """A text of a page, its numbers and its unit as they are; itself if it has no entry."""
+    """A text of a page, numbers and unit as they are; itself if it has no entry."""
     if text in WORDS:
         return WORDS[text]
     numbers = _NUMBER.findall(text)

@@ -130,8 +130,8 @@ def _test_of(data: str, test: str | None, pull: PullRequest, *, parts: bool) -> 
         raise UsageError(f"{data}: say behind it what was measured: {listed(TESTS)}")
     if pull != PullRequest():
         raise UsageError(
-            f"{test}: --displacement, --rest, --within and --range go with {PULL_BACK}, in"
-            " place of a file"
+            f"{test}: --displacement, --rest, --within and --range go with {PULL_BACK},"
+            " in place of a file"
         )
     return test
 

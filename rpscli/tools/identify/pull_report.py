@@ -24,8 +24,8 @@ REMARKS = (
     "an interval has every value that brings the building to rest in the time that was"
     " seen with one combination or more of {combinations}, evenly spread over the ranges:"
     " it is no probability, and as wide as they are. `held` stays where it was pushed."
-    " Slenderness is that of columns with a flat part, lever that of rolling resistance on"
-    " spherical ends: two numbers do not tell which of them stand. The building is pushed"
+    " Slenderness is that of columns with a flat part, lever that of rolling resistance"
+    " on spherical ends: two numbers do not tell which of them stand. The building is pushed"
     " at the cap beam and unstrained when it is let go; what else the case says is taken"
     " as it is"
 )
@@ -82,7 +82,7 @@ def _test(pull: PullRequest) -> Pull:
 
 
 def _of_estimates(found: PullBack) -> dict[str, Any]:
-    """Estimates in the form of other tests, with nothing where they have what no pull has."""
+    """Estimates in the form of other tests; nothing for what no pull has."""
     return {
         "level": None,
         "estimates": [
