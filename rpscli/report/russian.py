@@ -114,7 +114,9 @@ WORDS = TERMS | {
     "slenderness angle": "угол стройности",
     "slenderness angle of the wedge": "угол стройности по краю дуги",
     "rolling ends at": "качение кончается при",
-    "critical curvature ratio, first order": "критический радиус кривизны, первое приближение",
+    "critical curvature ratio, first order": (
+        "критический радиус кривизны, первое приближение"
+    ),
     "critical curvature ratio, exact": "критический радиус кривизны, точно",
     "all columns": "все опоры",
     "superstructure": "надземная часть",
@@ -126,7 +128,9 @@ WORDS = TERMS | {
     "uplift acceleration, quasi-static": "ускорение отрыва, квазистатически",
     "weight that is lifted": "поднимаемый вес",
     "uplift force at the cap beam": "сила отрыва на уровне ростверка",
-    "stiffness after uplift, at the cap beam": "жёсткость после отрыва, на уровне ростверка",
+    "stiffness after uplift, at the cap beam": (
+        "жёсткость после отрыва, на уровне ростверка"
+    ),
     "frequency parameter, rigid estimate": "параметр частоты, жёсткое здание",
     "first period on a fixed base": "первый период на жёстком основании",
     "weight on a column": "вес на одну опору",

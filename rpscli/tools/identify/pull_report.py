@@ -25,7 +25,8 @@ REMARKS = (
     " seen with one combination or more of {combinations}, evenly spread over the ranges:"
     " it is no probability, and as wide as they are. `held` stays where it was pushed."
     " Slenderness is that of columns with a flat part, lever that of rolling resistance"
-    " on spherical ends: two numbers do not tell which of them stand. The building is pushed"
+    " on spherical ends: two numbers do not tell which of them stand. The building is"
+    " pushed"
     " at the cap beam and unstrained when it is let go; what else the case says is taken"
     " as it is"
 )
