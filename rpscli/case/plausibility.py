@@ -243,7 +243,8 @@ def _turning_slab(structure: PodiumStructure) -> Iterator[Doubt]:
         " grow once it moves {0} of its critical displacement, so that columns at corners"
         " may move 1.1 to 1.5 times as far as the figure given (one motion in six: 1.5 to"
         " 2), unless their ends resist pivoting with a lever of some 20 mm of the weight,"
-        " or dampers of 0.1 W per m/s in all stand at the corners",
+        " or dampers of 0.1 W per m/s in all stand at the corners; a limit can carry the"
+        " factor, as in rotation_ratio: {{at_most: 0.5, factor: 1.3}}",
         ratio,
     )
 

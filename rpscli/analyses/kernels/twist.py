@@ -22,7 +22,6 @@ from rpscli.model.twist import Twist
 from rpscli.model.twisting import plan_of
 from rpscli.physics.records import record_type
 from rpscli.physics.state import RUNNING
-from rpscli.physics.twist.run import is_twist_ready, twist_kernel
 from rpscli.physics.twist.state import COLUMN, DAMPER, MODE, SAMPLES, SLAB
 from rpscli.records.ground_motion import MotionComponents
 
@@ -63,6 +62,8 @@ def follow_twist(
     structure: PodiumStructure, motion: MotionComponents, settings: TimeHistorySettings
 ) -> TwistRun:
     """Follow a slab and its columns from rest under both components."""
+    from rpscli.physics.twist.run import is_twist_ready, twist_kernel  # few turn
+
     twist = structure.twist
     places = plan_of(structure)
     assert twist is not None and places is not None, "the structure says so"  # noqa: PT018
