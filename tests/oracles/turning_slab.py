@@ -7,7 +7,7 @@ differences. No formula of the program is used.
 
 import numpy as np
 from scipy.integrate import solve_ivp
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize
 
 G = 9.80665
 
@@ -112,14 +112,15 @@ def holds(places, strengths, load, lever=0.0):
         arms = np.hypot(*(places - c).T)
         return strengths @ arms + lever - sign * (T + Q[0] * c[1] - Q[1] * c[0])
 
-    from scipy.optimize import minimize
-
-    starts = [*places, places.mean(axis=0), *(3.0 * places)]
     for sign in (1.0, -1.0):
-        for start in starts:
+        # Convex, with kinks at the places: from the best of these, and from the middle.
+        at = [missing(place, sign) for place in places]
+        if min(at) < 0.0:
+            return False
+        for start in (places[np.argmin(at)], places.mean(axis=0)):
             found = minimize(
                 missing, start + 1e-3, args=(sign,), method="Nelder-Mead",
-                options={"xatol": 1e-10, "fatol": 1e-13, "maxiter": 4000},
+                options={"xatol": 1e-10, "fatol": 1e-13, "maxiter": 2000},
             )  # fmt: skip
             if found.fun < 0.0:
                 return False
@@ -133,5 +134,5 @@ def factor_of(places, strengths, load, lever=0.0):
         lambda k: 1.0 if holds(places, strengths, k * load, lever) else -1.0,
         1e-3 * strengths.sum() / max(np.abs(load).max(), 1e-9),
         2.0 * strengths.sum() / max(np.abs(load[:2]).max(), np.abs(load[2]) / 10.0),
-        xtol=1e-9 * strengths.sum(), rtol=1e-9,
+        xtol=1e-8 * strengths.sum(), rtol=1e-8,
     )  # fmt: skip

@@ -36,7 +36,10 @@ def selected(rps_json, target, *options):
     return rps_json("record", "select", *words, "--figures", "none")
 
 
-@pytest.mark.parametrize("target", [EC8, ASCE])
+@pytest.mark.parametrize(
+    "target",
+    [EC8, pytest.param(ASCE, marks=pytest.mark.long)],  # eleven pairs take long
+)
 def test_a_list_that_was_selected_brings_its_target(rps, rps_json, target):
     """The numbers are those of the selection, of components and of pairs."""
     found = selected(rps_json, target, "-n", "3" if target == EC8 else "11")
