@@ -67,7 +67,15 @@ def histories(
 def demands(
     requests: Sequence[DemandRequest], *, worth_lanes: int = WORTH_LANES
 ) -> list[Demand]:
-    """Largest demands of each of many histories, in their order; see `histories`."""
+    """Largest demands of each of many histories, in their order; see `histories`.
+
+    Raises UsageError for a slab that turns, of which they would know nothing.
+    """
+    if any(request.structure.twist for request in requests):
+        raise UsageError(
+            "demand follows the slab's centre alone, and podium.twist is given: use"
+            " time_history, or twist=None"
+        )
     by_number: dict[int, Demand] = {}
     for members, together in histories(requests, worth_lanes=worth_lanes):
         for i, left in zip(members, together.left.view(np.recarray), strict=True):

@@ -122,15 +122,14 @@ def kinds_of_arguments(ways: int, lanes: int) -> tuple[Any, ...]:
     return state, system, request, ("Matrix", 1), result, output
 
 
-def program_text(ways: int, lanes: int) -> str:
-    """The kernel for so many directions and lanes, as LLVM's text."""
+def program_text(function: Kernel, kinds: tuple[Any, ...]) -> str:
+    """A kernel for arguments of such kinds, as LLVM's text."""
     from rpscli.compiler.functions import Program
     from rpscli.compiler.values import NotInLanguage
-    from rpscli.physics.follow import follow
 
     program = Program()
     try:
-        program.add(follow, kinds_of_arguments(ways, lanes), "@follow")
+        program.add(function, kinds, f"@{function.__name__}")
     except NotInLanguage as error:
         said = ": ".join(reversed(error.args))
         raise OutputError(
@@ -150,9 +149,14 @@ def kernel(ways: int, lanes: int) -> Kernel:
         return follow
     with _loading:
         if (ways, lanes) not in _loaded:
-            from rpscli.compiler.objects import Entry
-
-            code = kept().get(file_of(ways, lanes), lambda: program_text(ways, lanes))
             kinds = kinds_of_arguments(ways, lanes)
-            _loaded[ways, lanes] = Entry(code, "follow", kinds, None)
+            _loaded[ways, lanes] = machine_kernel(follow, kinds, file_of(ways, lanes))
         return _loaded[ways, lanes]
+
+
+def machine_kernel(function: Kernel, kinds: tuple[Any, ...], file: str) -> Kernel:
+    """A kernel as machine code, of its file if that is there."""
+    from rpscli.compiler.objects import Entry
+
+    code = kept().get(file, lambda: program_text(function, kinds))
+    return Entry(code, function.__name__, kinds, None)

@@ -79,6 +79,8 @@ def _seconds_of_parts(
             requests.append(_part(layout.context.history(point), share))
     if not requests or min(of.motion.npts for of in requests) < LEAST_PART:
         return None
+    if any(of.structure.twist for of in requests):
+        return None
     demands(requests[:WORTH_LANES])  # loads the kernel
     began = time.thread_time()
     demands(requests)

@@ -152,3 +152,9 @@ def test_a_scatter_of_many_columns_is_what_it_says():
     # Cut at three standard deviations, 1.3 % smaller.
     assert drawn.std() == pytest.approx(0.02 * 0.9866, rel=0.01)
     assert np.abs(drawn - 1.0).max() <= 0.06
+
+
+def test_demands_which_would_not_turn_are_refused():
+    structure = case().structure
+    with pytest.raises(RpsError, match="centre alone"):
+        rpscli.demand(structure, pair())

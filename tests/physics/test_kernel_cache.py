@@ -24,6 +24,7 @@ from rpscli.compiler.objects import DIGEST, Entry, Kept
 from rpscli.compiler.values import DOUBLE
 from rpscli.errors import OutputError
 from rpscli.physics import kernels
+from rpscli.physics.follow import follow
 from rpscli.physics.integrate import hear, in_background
 from rpscli.physics.kernels import OTHERS, SOURCES, cache_folder, not_kept, sources_digest
 from rpscli.physics.records import records
@@ -302,7 +303,7 @@ def test_a_kernel_without_sources_is_told(monkeypatch):
     functions.tree_of.cache_clear()
     monkeypatch.setattr(inspect, "getsource", unreadable)
     with pytest.raises(OutputError, match="install rps with its sources"):
-        kernels.program_text(1, 1)
+        kernels.program_text(follow, kernels.kinds_of_arguments(1, 1))
 
 
 @pytest.mark.posix

@@ -8,7 +8,8 @@ import pytest
 from paper_structures import needs_compiled_kernels
 
 from rpscli.compiler.objects import optimised
-from rpscli.physics.kernels import program_text
+from rpscli.physics.follow import follow
+from rpscli.physics.kernels import kinds_of_arguments, program_text
 from rpscli.physics.state import LANES
 
 LANE_BY_LANE = {
@@ -53,7 +54,7 @@ def left_as_they_were(text):
 @needs_compiled_kernels
 @pytest.mark.parametrize("ways", [1, 2])
 def test_loops_over_lanes_become_vector_instructions(ways):
-    text = program_text(ways, LANES)
+    text = program_text(follow, kinds_of_arguments(ways, LANES))
     loops = loops_over_lanes(text)
     assert len(loops) > 35
     scalar = Counter(name.split(":")[0] for name in loops & left_as_they_were(text))

@@ -20,6 +20,7 @@ from rpscli.model.bearing import Bearing
 from rpscli.model.podium import Array, PodiumStructure
 from rpscli.model.twist import Twist
 from rpscli.model.twisting import plan_of
+from rpscli.physics.laws.geometry import cap_beam_displacement
 from rpscli.physics.records import record_type
 from rpscli.physics.state import RUNNING
 from rpscli.physics.twist.state import COLUMN, DAMPER, MODE, SAMPLES, SLAB
@@ -107,7 +108,6 @@ def columns_of(
     floors = structure.superstructure_mass / count
     columns["x"], columns["y"] = places.T
     columns["mass"] = mass
-    columns["slab"] = slab
     columns["carried"] = 0.5 * mass + slab
     columns["weight"] = (0.5 * mass + slab + floors) * structure.gravity
     columns["one"] = 1.0 + 4.0 * slab / mass
@@ -137,8 +137,7 @@ def _fill_shape(column: np.void, bearing: Bearing) -> None:
     column["rolling"] = rolling
     column["rocking"] = bearing.rocking
     if beta > 0.0:
-        moved = rolling.u0 + rolling.c * beta
-        moved -= rolling.q * math.sin(beta) + rolling.p * math.cos(beta)
+        moved = cap_beam_displacement(rolling, beta, math.cos(beta), math.sin(beta))
         column["beyond_beta"] = column["diameter"] * moved
 
 
@@ -189,10 +188,9 @@ def slab_of(
     held = columns["weight"] * columns["tan_a"]
     rigid = 0.0 if structure.superstructure else structure.superstructure_mass
     own = (structure.cap_beam_mass + rigid) * gyration(places) ** 2
-    slab["inertia"] = own - np.sum(columns["slab"] * away**2)
+    slab["inertia"] = own - np.sum(structure.cap_beam_mass / len(places) * away**2)
     slab["radius"] = away.max()
     slab["gravity"] = structure.gravity
-    slab["weight"] = columns["weight"].sum()
     slab["pivot"] = twist.pivot_friction * columns["weight"].sum()
     slab["sinks"] = twist.seats or 0.0
     slab["held"] = held.sum()
@@ -225,7 +223,6 @@ def fill_course(
     slab["dt"] = motion.dt
     slab["npts"] = motion.npts
     slab["intervals"] = motion.npts - 1 + free
-    slab["scale"] = 1.0
     slab["arc"] = ARC / math.sqrt(accuracy)
     slab["step_error"] = max(STEP_ERROR * accuracy**-6, LEAST_ERROR)
     slab["until_rest"] = settings.free_vibration is None

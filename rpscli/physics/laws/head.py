@@ -21,7 +21,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from rpscli.physics.compile import inlined
-from rpscli.physics.laws.geometry import Phase
+from rpscli.physics.laws.geometry import Phase, contact_height
 from rpscli.physics.laws.place import Place, length, sines
 
 
@@ -51,7 +51,7 @@ def displacement(phase: Phase, x: float) -> float:
 def height(phase: Phase, x: float) -> float:
     """C(x), the slope of `displacement`."""
     sine, less, _ = sines(x)
-    return phase.c + phase.p * sine - phase.q * (1.0 - less)
+    return contact_height(phase, 1.0 - less, sine)
 
 
 MOST_TRIES = 12

@@ -25,7 +25,7 @@ from rpscli.physics.twist.passes import (
     share_of_pass,
 )
 from rpscli.physics.twist.resting import load_share, spare_torque
-from rpscli.physics.twist.slab import energy_of
+from rpscli.physics.twist.slab import energy_of, kinetic
 from rpscli.physics.twist.step import renew, take_step
 
 LAST = 1e-12
@@ -91,8 +91,8 @@ def set_ground(s: Record, ground: Floats) -> None:
     """The ground's acceleration over the interval; none behind the record."""
     i = s.interval
     for axis in range(2):
-        before = s.scale * ground[axis, i] if i < s.npts else 0.0
-        behind = s.scale * ground[axis, i + 1] if i + 1 < s.npts else 0.0
+        before = ground[axis, i] if i < s.npts else 0.0
+        behind = ground[axis, i + 1] if i + 1 < s.npts else 0.0
         if i + 1 == s.npts:
             before = 0.0
         s.a_g[axis] = before
@@ -353,9 +353,7 @@ def comes_to_rest(s: Record, columns: Record) -> bool:
     if spare_torque(s, columns, Q_x, Q_y, T) <= 0.0:
         return False
     share = load_share(s, columns, Q_x, Q_y, T)
-    r = s.rate
-    energy = 0.5 * (s.M[0] * r[0] * r[0] + s.M[2] * r[1] * r[1] + s.M[5] * r[2] * r[2])
-    energy += s.M[1] * r[0] * r[1] + (s.M[3] * r[0] + s.M[4] * r[1]) * r[2]
+    energy = kinetic(s)
     for i in range(columns.shape[0]):
         energy += columns[i].weight * columns[i].lift
     energy -= Q_x * s.way[0] + Q_y * s.way[1] + T * s.way[2]

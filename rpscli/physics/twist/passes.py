@@ -7,7 +7,7 @@ import math
 from rpscli.physics.compile import compiled, inlined
 from rpscli.physics.laws.place import length
 from rpscli.physics.state import Record
-from rpscli.physics.twist.slab import Masses, solved
+from rpscli.physics.twist.slab import Masses, kinetic, solved
 from rpscli.physics.upright import loss_share
 
 LEFT = 1.1
@@ -99,11 +99,3 @@ def with_part(M: Masses, S: float, p: tuple[float, float, float]) -> Masses:
         M[4] + S * p[1] * p[2],
         M[5] + S * p[2] * p[2],
     )
-
-
-@compiled
-def kinetic(s: Record) -> float:
-    """Kinetic energy of slab and columns at the present rates [J]."""
-    r = s.rate
-    energy = 0.5 * (s.M[0] * r[0] * r[0] + s.M[2] * r[1] * r[1] + s.M[5] * r[2] * r[2])
-    return energy + s.M[1] * r[0] * r[1] + (s.M[3] * r[0] + s.M[4] * r[1]) * r[2]  # type: ignore[no-any-return]

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import hashlib
+from threading import Lock
 from typing import Any
 
-from rpscli.physics.kernels import are_interpreted, kept
+from rpscli.physics.kernels import are_interpreted, kept, machine_kernel
 from rpscli.physics.records import record_type
 from rpscli.physics.twist.state import COLUMN, DAMPER, MODE, SLAB
 
 _loaded: list[Any] = []
+_loading = Lock()
 
 
 def file_of_twist() -> str:
@@ -32,25 +34,14 @@ def kinds_of_twist() -> tuple[Any, ...]:
     return (*rows, *[("Matrix", 2)] * 3)
 
 
-def text_of_twist() -> str:
-    """The kernel as LLVM's text."""
-    from rpscli.compiler.functions import Program
-    from rpscli.physics.twist.follow import follow_twist
-
-    program = Program()
-    program.add(follow_twist, kinds_of_twist(), "@follow_twist")
-    return program.text()
-
-
 def twist_kernel() -> Any:
     """`follow.follow_twist`, compiled if it was never called before."""
+    from rpscli.physics.twist.follow import follow_twist
+
     if are_interpreted():
-        from rpscli.physics.twist.follow import follow_twist
-
         return follow_twist
-    if not _loaded:
-        from rpscli.compiler.objects import Entry
-
-        code = kept().get(file_of_twist(), text_of_twist)
-        _loaded.append(Entry(code, "follow_twist", kinds_of_twist(), None))
-    return _loaded[0]
+    with _loading:
+        if not _loaded:
+            kernel = machine_kernel(follow_twist, kinds_of_twist(), file_of_twist())
+            _loaded.append(kernel)
+        return _loaded[0]

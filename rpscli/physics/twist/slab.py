@@ -86,7 +86,7 @@ def lift_at(c: Record, x: float) -> float:
 
 
 @compiled
-def find(s: Record, columns: Record, modes: Record, dampers: Record, at: float) -> None:
+def find(s: Record, columns: Record, dampers: Record, at: float) -> None:
     """Accelerations of the slab at a stage, from `new_way`, `new_rate` and V."""
     place_heads(s, columns)
     set_loads(s, columns)
@@ -234,17 +234,19 @@ def total_rate(s: Record, m: Record) -> float:
 
 
 @compiled
+def kinetic(s: Record) -> float:
+    """Kinetic energy of slab and columns at the present rates [J]."""
+    r = s.rate
+    energy = 0.5 * (s.M[0] * r[0] * r[0] + s.M[2] * r[1] * r[1] + s.M[5] * r[2] * r[2])
+    return float(energy + s.M[1] * r[0] * r[1] + (s.M[3] * r[0] + s.M[4] * r[1]) * r[2])
+
+
+@compiled
 def energy_of(s: Record, columns: Record, modes: Record) -> float:
-    """Energy over the ground at the last stage [J], of which `M` and heads are known."""
-    r = s.new_rate
-    if s.stands > 0:
-        energy = 0.0
-    else:
-        energy = 0.5 * (
-            s.M[0] * r[0] * r[0] + s.M[2] * r[1] * r[1] + s.M[5] * r[2] * r[2]
-        )
-        energy += s.M[1] * r[0] * r[1] + (s.M[3] * r[0] + s.M[4] * r[1]) * r[2]
-        energy += strain_of_seats(s, columns)
+    """Energy over the ground at the present state [J], which `renew` has prepared."""
+    energy = 0.0
+    if s.stands == 0:
+        energy = kinetic(s) + strain_of_seats(s, columns)
     for k in range(modes.shape[0]):
         m = modes[k]
         fast = total_rate(s, m)

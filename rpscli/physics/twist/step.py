@@ -89,7 +89,7 @@ def renew(
         m.new_q = m.q
         m.new_dq = m.dq
     set_forces(s, modes, offset)
-    find(s, columns, modes, dampers, 0.0)
+    find(s, columns, dampers, 0.0)
     for axis in range(3):
         s.bend[axis] = s.new_bend[axis]
     s.away = math.sqrt(s.way[0] * s.way[0] + s.way[1] * s.way[1])
@@ -114,7 +114,7 @@ def take_step(
     for k in range(1, END + 1):
         advance_modes(s, modes, offset, k)
         advance_slab(s, k)
-        find(s, columns, modes, dampers, TIMES[k])
+        find(s, columns, dampers, TIMES[k])
         for axis in range(3):
             s.bends[k, axis] = s.new_bend[axis]
         if k < END:

@@ -210,6 +210,9 @@ def step_notes(table: PointTable) -> Iterator[str]:
     known = np.flatnonzero(~table.failed)
     some = known[:: max(-(-len(known) // COMPUTED_AGAIN), 1)].tolist()
     requests = [layout.context.history(layout[number]) for number in some]
+    if any(request.structure.twist for request in requests):
+        yield "steps: points of slabs that turn were not computed again with half the length"
+        return
     finer = [
         replace(of, settings=replace(of.settings, accuracy=FINER * of.settings.accuracy))
         for of in requests
