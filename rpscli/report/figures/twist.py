@@ -7,6 +7,7 @@ import numpy as np
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.twist import TwistResult
 from rpscli.report.figures import style
+from rpscli.report.figures.history import record_name
 
 PART = 0.35
 """Of the least distance of columns: as far as the largest displacement is drawn."""
@@ -19,7 +20,7 @@ def twist_figure(result: TimeHistoryResult, title: str, figure: style.Figure) ->
     scale = enlargement(twist)
     words = (
         title,
-        f"{result.record.name}; displacements times {scale:.3g}",
+        f"{record_name(result)}; displacements times {scale:.3g}",
         result.sampling,
     )
     style.begin(figure, words, 6.4)
@@ -43,7 +44,7 @@ def draw_paths(axes: style.Axes, twist: TwistResult) -> None:
     for i, (x, y) in enumerate(twist.run.places.tolist()):
         path = twist.column_ways[:, i]
         worst = i == twist.worst_column
-        label = f"column {i + 1}: {twist.max_corner_displacement:.3g} m" if worst else ""
+        label = f"column {i + 1}: {twist.max_corner_displacement:#.3g} m" if worst else ""
         axes.plot(
             x + scale * path[:, 0],
             y + scale * path[:, 1],
@@ -58,7 +59,7 @@ def draw_paths(axes: style.Axes, twist: TwistResult) -> None:
         scale * centre[:, 1],
         color=style.BLACK,
         lw=0.7,
-        label=f"centre: {twist.max_centre_displacement:.3g} m",
+        label=f"centre: {twist.max_centre_displacement:#.3g} m",
     )
     axes.set_aspect("equal", adjustable="datalim")
     axes.set(xlabel="$x$ from the centre [m]", ylabel="$y$ [m]")

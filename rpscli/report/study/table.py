@@ -71,6 +71,10 @@ class TableOptions(OverturningOptions):
     )
 
 
+DARKEST = 1.8
+"""Shade of the map's end, over that of a whole share: black letters stay legible."""
+
+
 class Cell(NamedTuple):
     """A cell of a table, of some histories."""
 
@@ -331,7 +335,7 @@ def _picture(shown: ShownTable, title: str, figure: style.Figure) -> None:
     style.begin(figure, words, other + most * fitted.height, own)
     axes = figure.subplots()
     shades = [[cell.shade for cell in row] for row in fitted.cells[:most]]
-    axes.pcolormesh(shades, cmap="Blues", vmin=0.0, vmax=1.0, alpha=0.75)
+    axes.pcolormesh(shades, cmap="Blues", vmin=0.0, vmax=DARKEST, alpha=0.75)
     for y, x in np.ndindex(most, columns):
         _write_cell(axes, fitted, y, x)
     axes.set_xticks(np.arange(columns) + 0.5, fitted.heads)
