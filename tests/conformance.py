@@ -204,12 +204,8 @@ def table():
 
 def with_tables(text):
     """The document with both tables between their marks."""
-    found = re.subn(
-        f"{BEGIN}[\\s\\S]*?{END}", lambda _: f"{BEGIN}\n{table()}\n{END}", text
-    )
-    if found[1] != 1:
-        raise ValueError(f"{DOCUMENT.name} has no place `{BEGIN}` ... `{END}`")
-    return evidence.with_table(found[0])
+    own = evidence.between(text, BEGIN, END, table(), DOCUMENT.name)
+    return evidence.with_table(own)
 
 
 def files():

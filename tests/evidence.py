@@ -116,14 +116,17 @@ def table():
     return "\n".join(lines)
 
 
+def between(text, begin, end, made, name):
+    """A document `name` with what is made between its two marks."""
+    found = re.subn(f"{begin}[\\s\\S]*?{end}", lambda _: f"{begin}\n{made}\n{end}", text)
+    if found[1] != 1:
+        raise ValueError(f"{name} has no place `{begin}` ... `{end}`")
+    return found[0]
+
+
 def with_table(text):
     """A document with the table between its two marks."""
-    found = re.subn(
-        f"{BEGIN}[\\s\\S]*?{END}", lambda _: f"{BEGIN}\n{table()}\n{END}", text
-    )
-    if found[1] != 1:
-        raise ValueError(f"{DOCUMENT.name} has no place `{BEGIN}` ... `{END}`")
-    return found[0]
+    return between(text, BEGIN, END, table(), DOCUMENT.name)
 
 
 if __name__ == "__main__":
