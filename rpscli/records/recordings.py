@@ -17,8 +17,9 @@ Histories under motions that hang together do not tell as much as so many motion
 * synthetic motions of one seed.
 
 Any other source is a recording of its own. Of one event are recordings whose files state
-the same origin time or name an earthquake of the same name and year; other recordings
-are events of their own.
+the same origin time or name an earthquake of the same name and year. Files that state a
+date alone, under a name that no file with a time has, are of the earthquakes of that day,
+of which catalogues have several names. Other recordings are events of their own.
 
 `pairs` tells which sources are measured as a pair, by `pair_measure`, and
 both components of these.
@@ -29,6 +30,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from datetime import UTC, datetime
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Literal
 
@@ -228,9 +230,10 @@ def clusters(
         names = {_family(of, place, apart) for place in own}
         if of.scheme == FILE:
             names |= _stated_name(stated(of, folder))
-        if by == "events":
-            names |= _event_names(stated(of, folder))
         every.append(names)
+    if by == "events":
+        of_events = _names_of_events([stated(of, folder) for of in parsed])
+        every = [names | own for names, own in zip(every, of_events, strict=True)]
     return numbered(every)
 
 
@@ -256,9 +259,43 @@ def events_among(
     that states no earthquake is of one of its own.
     """
     return numbered([
-        _event_names(each) or {f"recording {number}"}
-        for each, number in zip(recordings, numbers, strict=True)
+        names or {f"recording {number}"}
+        for names, number in zip(_names_of_events(recordings), numbers, strict=True)
     ])  # fmt: skip
+
+
+def _names_of_events(recordings: Sequence[Recording]) -> list[set[str]]:
+    """Names that recordings of one earthquake share, of each of several recordings.
+
+    A date without a clock time is that of any earthquake of the day, where no name says
+    which: agencies call Izmit what others call Kocaeli.
+    """
+    every = [_event_names(each) for each in recordings]
+    days = [_days_of(each) for each in recordings]
+    alone = [names or {f"{number}"} for number, names in enumerate(every)]
+    groups = numbered(alone)
+    timed = {
+        group
+        for group, each in zip(groups, recordings, strict=True)
+        if seconds_of(each.origin) is not None
+    }
+    open_days = set().union(
+        *(own for group, own in zip(groups, days, strict=True) if group not in timed)
+    )
+    return [
+        names | {f"event on {day}" for day in own & open_days}
+        for names, own in zip(every, days, strict=True)
+    ]
+
+
+def _days_of(recording: Recording) -> set[tuple[int, int, int]]:
+    """Days of the earthquake as it is stated, and in UTC."""
+    days = days_of(recording.event) | days_of(recording.origin)
+    seconds = seconds_of(recording.origin)
+    if seconds is not None:
+        at = datetime.fromtimestamp(seconds, UTC)
+        days.add((at.year, at.month, at.day))
+    return days
 
 
 def _family(of: Source, place: str, apart: set[str]) -> str:  # noqa: PLR0911 -- a kind each

@@ -298,6 +298,18 @@ def test_refuses(tmp_path, text, options, message):
         load(tmp_path, text, options)
 
 
+@pytest.mark.parametrize(
+    ("part", "end"), [(slice(60, None), "first"), (slice(None, -60), "last")]
+)
+def test_a_motion_that_does_not_begin_and_end_at_rest_is_a_warning(tmp_path, part, end):
+    t = np.arange(400) * 0.005
+    values = np.sin(20.0 * t) * np.sin(np.pi * t / t[-1])
+    text = "units: g\ndt: 0.005\n{}"
+    assert not load(tmp_path, text.format(rows(values))).warnings
+    (warning,) = load(tmp_path, text.format(rows(values[part]))).warnings
+    assert warning.startswith(f"the {end} value is 0.")
+
+
 def test_an_offset_is_a_warning(tmp_path):
     (warning,) = load(tmp_path, f"units: g\ndt: 0.005\n{rows(VALUES + 1.0)}").warnings
     assert "of the peak: an offset of the instrument?" in warning

@@ -12,7 +12,7 @@ from rpscli.commands.inputs import MotionRequest, single_motions
 from rpscli.errors import RecordError, UsageError
 from rpscli.records.ground_motion import Recording
 from rpscli.records.loading import expand_sources, expanded, load_components, load_record
-from rpscli.records.recordings import clusters, pairs
+from rpscli.records.recordings import clusters, events_among, pairs
 from rpscli.records.source import Source
 
 STATED = {
@@ -64,6 +64,38 @@ def test_titles_of_at2_files_tell_a_pair(tmp_path):
     assert (
         known(load_components(pair, "own", folder=tmp_path).vertical).source == "up.at2"
     )
+
+
+IZMIT = Recording("Izmit, 17.08.1999")
+KOCAELI = Recording("Kocaeli, Turkey, 8/17/1999")
+TIMED = Recording("Izmit", origin="1999-08-17 00:01:39")
+LATER = Recording("", origin="1999-08-17 14:00:00")
+
+
+@pytest.mark.parametrize(
+    ("recordings", "numbers"),
+    [
+        ((IZMIT, KOCAELI, KOCAELI), (0, 0, 0)),
+        ((TIMED, KOCAELI), (0, 0)),
+        # In Japan the day has begun nine hours before.
+        (
+            (
+                Recording("Kobe, Japan, 1/16/1995"),
+                Recording("", origin="1995/01/17 05:46 JST"),
+            ),
+            (0, 0),
+        ),
+        ((TIMED, LATER), (0, 1)),  # both with a time, of one day
+        ((TIMED, IZMIT, LATER), (0, 0, 1)),  # a name that a file with a time has
+        ((Recording("Izmit 1999"), Recording("Duzce 1999")), (0, 1)),
+        (
+            (Recording("Kocaeli, Turkey, 8/17/1999"), Recording("Duzce, 11/12/1999")),
+            (0, 1),
+        ),
+    ],
+)
+def test_names_of_one_day_without_a_time_are_of_one_event(recordings, numbers):
+    assert events_among(recordings, range(len(recordings))) == numbers
 
 
 @pytest.mark.parametrize("name", STATED)

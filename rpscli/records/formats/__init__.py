@@ -10,6 +10,8 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
+import numpy as np
+
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import PluginError, RecordError
 from rpscli.records.formats.agencies import LAYOUTS
@@ -68,6 +70,7 @@ _FINEST = 1e-4  # s
 _COARSEST = 0.1
 _OFFSET = 0.1  # of the peak, samples
 _MANY = 100
+_AT_REST = 0.1  # of the peak; 115 real records begin and end below half of it
 
 
 def read_record(path: Path, of: Source) -> GroundMotion:
@@ -89,6 +92,10 @@ def read_record(path: Path, of: Source) -> GroundMotion:
         raise RecordError("\n".join([str(error), *unusable])) from error
     peak = motion.pga / STANDARD_GRAVITY
     mean = abs(float(motion.acceleration.mean()))
+    long = motion.npts >= _MANY
+    offset = long and mean > _OFFSET * motion.pga
+    with_ends = long and not offset
+    first, last = np.abs(motion.acceleration[[0, -1]]) / max(motion.pga, 1e-300)
     if peak > _NONSENSE:
         raise text.fault(
             f"the largest value is {peak:.3g} g, which is not a ground acceleration; the"
@@ -96,8 +103,11 @@ def read_record(path: Path, of: Source) -> GroundMotion:
         )
     doubts = {
         f"the mean is {mean / max(motion.pga, 1e-300):.2g} of the peak: an offset of the"
-        " instrument? Correct the record": motion.npts >= _MANY
-        and mean > _OFFSET * motion.pga,
+        " instrument? Correct the record": offset,
+        f"the first value is {first:.2g} of the peak: the beginning of the motion is not"
+        " in the file": with_ends and first > _AT_REST,
+        f"the last value is {last:.2g} of the peak: the end of the motion is not in the"
+        " file": with_ends and last > _AT_REST,
         f"dt = {motion.dt:g} s is unusual for an accelerograph ({_FINEST:g} s to"
         f" {_COARSEST:g} s): check the time step": not _FINEST <= motion.dt <= _COARSEST,
         f"PGA = {peak:.3g} g is beyond any recorded earthquake: check the units": peak
