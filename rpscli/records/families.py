@@ -103,8 +103,7 @@ def require_two(motions: Mapping[Source, GroundMotion], folder: Path | None) -> 
             raise RecordError(
                 f"{names}: are of one length, as two horizontal components and a vertical"
                 " one are, and neither names nor headers tell which is vertical. Call"
-                " that"
-                " one ...-UP, or name the records that are meant one by one"
+                " that one ...-UP, or name the records that are meant one by one"
             )
 
 
@@ -121,9 +120,35 @@ def _threes(
             groups.setdefault((*size, key), []).append((of, word))
         word = direction_by_name(name)
         groups.setdefault((*size, number[of]), []).append((of, word))
+    counted = _of_a_series(motions)
     for members in groups.values():
-        if len(members) == _MANY:
-            yield [of for of, _ in members], [word for _, word in members]
+        words = [word for _, word in members]
+        if len(members) != _MANY or _have_names_of_their_own(members):
+            continue
+        by_number = all(word.isdigit() for word in words)
+        if not (by_number and counted & dict(members).keys()):
+            yield [of for of, _ in members], words
+
+
+def _have_names_of_their_own(members: Iterable[tuple[Source, str]]) -> bool:
+    """True of files that share no part of a name, and whose names are no directions."""
+    return all(
+        PurePath(of.place).stem == word
+        and not word.isdigit()
+        and direction_of(word) is None
+        for of, word in members
+    )
+
+
+def _of_a_series(sources: Iterable[Source]) -> set[Source]:
+    """Files that are numbered with more than two others: some may be of one length."""
+    series: dict[tuple[str, str], list[Source]] = {}
+    for of in sources:
+        path = PurePath(of.place)
+        for form, word in forms_of(path.name).items():
+            if word.isdigit():
+                series.setdefault((str(path.parent), form), []).append(of)
+    return {of for members in series.values() if len(members) > _MANY for of in members}
 
 
 def _all_horizontal(words: Sequence[str], stated_ones: Sequence[str]) -> bool:

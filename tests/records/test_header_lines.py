@@ -214,6 +214,24 @@ def test_three_of_three_stations_or_lengths_are_no_components(tmp_path):
     assert len(expanded([f"{tmp_path}"])[0]) == 3
 
 
+@pytest.mark.parametrize(
+    ("names", "sizes"),
+    [
+        (("kobe", "duzce", "taft"), (160,) * 3),  # matched to one spectrum, by programs
+        (("Test010", "Test011", "Test012", "Test020"), (150, 150, 150, 160)),
+        (("Test130", "Test132", "Test134", "Test12", "Test7"), (160,) * 3 + (150, 150)),
+    ],
+)
+def test_names_of_their_own_and_numbers_of_a_series_are_no_components(
+    names, sizes, tmp_path
+):
+    texts = {
+        name: series("dt: 0.005", "units: g", values=VALUES[:size] ** (k + 1))
+        for k, (name, size) in enumerate(zip(names, sizes, strict=True))
+    }
+    assert len(folder(tmp_path, **texts)[0]) == len(names)
+
+
 @pytest.mark.parametrize("heads", ["HL1,HL2,HL3", "p,q,a", "H1,H2,third", "NS,EW,aux"])
 def test_a_table_of_three_is_asked_for(heads, tmp_path):
     text = table(f"dt: 0.005\nunits: g\n{heads}", VALUES, VALUES**2, VALUES**3)
