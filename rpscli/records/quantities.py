@@ -31,6 +31,17 @@ ACCELERATIONS = {
 }
 """The one table of units of acceleration, by their canonical names [m/s2]."""
 
+TIME_UNITS = {
+    **dict.fromkeys(("", "s", "sec", "secs", "second", "seconds", "sn", "seg", "с"), 1.0),
+    **dict.fromkeys(("сек", "saniye", "segundos", "secondes", "secondi", "秒"), 1.0),
+    **dict.fromkeys(("sekunde", "sekunden", "segundo", "seconde", "secondo"), 1.0),
+    **dict.fromkeys(("ms", "msec", "msecs", "millisec", "millisecs", "мс"), 1e-3),
+    **dict.fromkeys(("millisecond", "milliseconds", "milisegundos", "mseg"), 1e-3),
+}
+"""The one table of units of time, in small letters without accents [s]."""
+
+HERTZ_PATTERN = "(?:hz|гц|1/s|ヘルツ|赫兹)"
+
 KNOWN_UNITS = ", ".join(ACCELERATIONS)  # the canonical names, for messages
 _PER_SECOND_TWICE = (
     r"\s*(?:/\s*(?:s(?:ec|n)?|с(?:ек)?)\.?\s*"

@@ -27,7 +27,13 @@ from rpscli.errors import (
     told,
 )
 from rpscli.records.measures import Of
-from rpscli.records.quantities import ACCELERATIONS, KNOWN_UNITS, canonical_unit
+from rpscli.records.quantities import (
+    ACCELERATIONS,
+    HERTZ_PATTERN,
+    KNOWN_UNITS,
+    TIME_UNITS,
+    canonical_unit,
+)
 from rpscli.records.source import Query, hint, parse_query
 from rpscli.records.words import folded, look_alikes
 from rpscli.registry import Registry, owner_of
@@ -450,6 +456,7 @@ def _read_ordinates(path: Path, source: str) -> _Ordinates:
     width = 3 if scatters else 2
     places = (0, 1, scatters)[:width]
     cells = np.array([_cells(row, places, path) for row in table.rows]).reshape(-1, width)
+    cells = _over_periods(cells, table.titles[0].unit)
     unused = [n for place, n in enumerate(table.names) if place not in places]
     rigid = cells[cells[:, 0] == 0.0]  # 0 has no logarithm
     cells = cells[cells[:, 0] > 0.0]
@@ -458,6 +465,22 @@ def _read_ordinates(path: Path, source: str) -> _Ordinates:
     pga = factor * float(rigid[0, 1]) if len(rigid) else None
     note = f"columns not used: {', '.join(unused)}" if unused else ""
     return _Ordinates(cells, factor, bool(scatters), pga, note)
+
+
+def _over_periods(cells: Array, unit: str) -> Array:
+    """Rows over periods [s], of rows over periods in a unit of time or over frequencies."""
+    if not re.fullmatch(HERTZ_PATTERN, folded(unit)):
+        return cells * [TIME_UNITS[folded(unit)], *[1.0] * (cells.shape[1] - 1)]
+    cells = cells[cells[:, 0] > 0.0][::-1]  # at the frequency 0 the period has no bound
+    return np.column_stack([1.0 / cells[:, 0], cells[:, 1:]])
+
+
+def _is_of_periods(unit: str) -> bool:
+    """True of a unit of periods or of frequencies."""
+    return bool(unit) and (
+        folded(unit) in TIME_UNITS
+        or re.fullmatch(HERTZ_PATTERN, folded(unit)) is not None
+    )
 
 
 _DEVIATION = re.compile(
@@ -499,15 +522,19 @@ def _columns_of(path: Path, source: str) -> TitledTable:
         raise RecordError(f"{source}: cannot be read: {error}; name a CSV file") from None
     table = titled_table(text, path, RecordError)
     titles = table.titles
-    if len(titles) < 2 or titles[0].unit != "s" or canonical_unit(titles[1].unit) is None:
+    known = len(titles) > 1 and canonical_unit(titles[1].unit) is not None
+    if not (known and _is_of_periods(titles[0].unit)):
         odd = [
             f"{title.name} [{title.unit}]{look_alikes(f'{title.name} {title.unit}')}"
             for place, title in enumerate(titles[:2])
-            if not (canonical_unit(title.unit or "-") if place else title.unit == "s")
+            if not (
+                canonical_unit(title.unit or "-") if place else _is_of_periods(title.unit)
+            )
         ]
         raise RecordError(
             f"{path}:{table.line}: {table.written} should name two columns with units,"
-            f" as in 'period [s],acceleration [g]'; accelerations are in {KNOWN_UNITS}"
+            " as in 'period [s],acceleration [g]' (or [ms], or a frequency in [Hz]);"
+            f" accelerations are in {KNOWN_UNITS}"
             f" (not understood: {', '.join(odd) or 'one title only'})"
         )
     return table

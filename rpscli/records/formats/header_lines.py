@@ -14,10 +14,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rpscli.records.formats.record_text import TIME_UNITS, Array, RecordText
+from rpscli.records.formats.record_text import Array, RecordText
 from rpscli.records.formats.statements import STATED_PATTERN, Statement
 from rpscli.records.quantities import (
     ACCELERATIONS,
+    HERTZ_PATTERN,
+    TIME_UNITS,
     UNIT_PATTERN,
     canonical_unit,
     last_digit,
@@ -82,7 +84,7 @@ _TITLED = re.compile(r"[^:=]*\w,[^:=]*,\s*[0-3]?\d\d\s*$")
 _YEAR = re.compile(r"(?:18|19|20)\d\d")
 _IN_BRACKETS = re.compile(r"[\[(]\s*([^\])]*?)\s*[\])]")
 
-_HERTZ = re.compile(r"hz|гц|sps|1/s|samples?(?:/s\w*|persec\w*)?|ヘルツ|赫兹")
+_RATE = re.compile(rf"{HERTZ_PATTERN}|sps|samples?(?:/s\w*|persec\w*)?")
 
 _SCALED = re.compile(
     r"(?<![?&(_-])\b(?:normali[sz]ed|normalis\w+|normier\w*|scaled|rescaled|skaliert"
@@ -227,7 +229,7 @@ def _step_of(said: Said) -> float | None:
         return None if speaks_of(said.key, others) else number * TIME_UNITS[behind]
     if speaks_of(said.key, others):
         return None
-    if samples and (_HERTZ.fullmatch(behind) or (not behind and number > 1.0)):
+    if samples and (_RATE.fullmatch(behind) or (not behind and number > 1.0)):
         return 1.0 / number
     return number if not behind and number <= 0.5 else None
 

@@ -22,6 +22,7 @@ from rpscli.records.quantities import (
     ACCELERATIONS,
     KNOWN_UNITS,
     NUMBER_PATTERN,
+    TIME_UNITS,
     UNIT_PATTERN,
     canonical_unit,
     last_digit,
@@ -47,13 +48,6 @@ _MULTIPLE = re.compile(
 )
 """A factor on the values."""
 
-TIME_UNITS = {
-    **dict.fromkeys(("", "s", "sec", "secs", "second", "seconds", "sn", "seg", "с"), 1.0),
-    **dict.fromkeys(("сек", "saniye", "segundos", "secondes", "secondi", "秒"), 1.0),
-    **dict.fromkeys(("sekunde", "sekunden", "segundo", "seconde", "secondo"), 1.0),
-    **dict.fromkeys(("ms", "msec", "msecs", "millisec", "millisecs", "мс"), 1e-3),
-    **dict.fromkeys(("millisecond", "milliseconds", "milisegundos", "mseg"), 1e-3),
-}
 _JOINING = {
     "and",
     "with",

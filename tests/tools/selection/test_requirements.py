@@ -318,6 +318,22 @@ def test_targets_that_are_refused(source, message):
 
 
 @pytest.mark.parametrize(
+    "text",
+    [
+        "T [ms];Sa [g]\n500;0,2\n1000;0,1\n",
+        "период [сек],Sa [g]\n0.5,0.2\n1,0.1\n",
+        "Frequenz [Hz]\tSa [m/s2]\n0\t0.1\n1\t0.980665\n2\t1.96133\n",
+        "T (Sekunden),Sa (%g)\n.5,20\n1,10\n",
+    ],
+)
+def test_periods_in_other_units_and_frequencies(text, tmp_path):
+    target = load_target(table(tmp_path, text))
+    assert target.span == (0.5, 1.0)
+    ordinates = target.acceleration(np.array([0.5, 1.0]))
+    assert ordinates == pytest.approx([0.2 * 9.80665, 0.1 * 9.80665], rel=1e-12)
+
+
+@pytest.mark.parametrize(
     ("text", "message"),
     [
         ("0.1,0.5\n", "should name two columns with units"),
