@@ -138,11 +138,15 @@ class History:
         return self.of_kind(RECONTACT)
 
 
-def followed(structure, motion, settings=None, turning=0.0, finer=1):
-    """A history alone, of its record unless the settings say more; perhaps turning at its start."""
+def followed(structure, motion, settings=None, turning=0.0, finer=1, uplift_tilt=None):
+    """A history alone, of its record unless the settings say more; perhaps turning at its start,
+    and with uplifts that begin at another tilt [rad].
+    """
     settings = settings or TimeHistorySettings(free_vibration=0.0)
     systems = stacked_systems([(structure, settings)], pairs=True).copy()
     systems["initial_turning"] = turning
+    if uplift_tilt is not None:
+        systems["uplift_tilt"] = uplift_tilt
     rows = longest_history(structure, settings, motion) * finer
     run = run_of(
         systems,

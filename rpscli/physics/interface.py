@@ -24,6 +24,7 @@ SYSTEM = (
         theta_limit="counts as overturned",
         initial_rotation="theta at the start, released from rest",
     ),
+    Field("uplift_tilt", "", "rad", "tilt with which an uplift to any side begins"),
     Field(
         "initial_turning",
         "",

@@ -59,11 +59,8 @@ from rpscli.physics.state import (
 )
 from rpscli.physics.step import renew
 
-UPRIGHT_TILT = 5e-10
-"""theta_c [rad]: what passes nearer is taken over by a map."""
-
-UPLIFT_TILT = 1e-9
-"""Tilt with which an uplift to any side begins [rad]; its azimuth is that of the push."""
+UPRIGHT_TILT = 5e-13
+"""theta_c [rad]: what passes nearer is taken over by a map; below `uplift_tilt`."""
 
 FIRST_STEP = 3e-5
 """Longest step at the start of such an uplift [s]."""
@@ -189,7 +186,7 @@ def pass_upright(s: Record, l: int, system: Record, log: Record, near: bool) -> 
         return
     now = polar(s, l, tilt_of(s, l), rate_of(s, l))
     x, n, t, p, q = now
-    if not near and x <= 2.0 * UPLIFT_TILT and abs(q) < x:
+    if not near and x <= 2.0 * system.uplift_tilt and abs(q) < x:
         set_polar(s, l, x, n, t, 0.0, q)
         return  # it has only begun to tilt, a little too early
     at = place_of(s, l, x)
@@ -399,14 +396,15 @@ def come_to_rest(s: Record, l: int, system: Record, log: Record) -> None:
 
 @compiled
 def begin_tilt(s: Record, l: int, system: Record, z_x: float, z_y: float) -> None:
-    """Tilt to any side along z, at rest, by 1e-9; the work of that is booked."""
+    """Tilt to any side along z, at rest, by `uplift_tilt`; the work of that is booked."""
     size = length(z_x, z_y)
     if size == 0.0:  # what falls freely may tilt to any side
         z_x = 1.0
         size = 1.0
     strain = strain_energy(s, l)
     lifted = 0.0
-    rise = UPLIFT_TILT
+    start = system.uplift_tilt
+    rise = start
     before = beam_now(s, l)
     if s.phase[l] != FULL_CONTACT:
         x, _, _, p, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
@@ -419,10 +417,10 @@ def begin_tilt(s: Record, l: int, system: Record, z_x: float, z_y: float) -> Non
     enter_phase(s, l, system, first_phase(system))
     arm = s.diameter[l] * math.cos(system.alpha)
     rate = 2.0 * s.stop_speed[l] / arm if has_friction(s, l) else 0.0
-    set_polar(s, l, UPLIFT_TILT, z_x / size, z_y / size, rate, 0.0)
+    set_polar(s, l, start, z_x / size, z_y / size, rate, 0.0)
     move_floors(s, l, before)
-    moving = tilting_energy(s, l, place_of(s, l, UPLIFT_TILT), rate, 0.0)
-    s.energy_input[l] += potential(s, l, system, UPLIFT_TILT) - lifted + moving
+    moving = tilting_energy(s, l, place_of(s, l, start), rate, 0.0)
+    s.energy_input[l] += potential(s, l, system, start) - lifted + moving
     s.energy_input[l] += strain_energy(s, l) - strain
     s.energy_input[l] += force_at_rest(s, l)[0] * arm * rise
     s.h_limit[l] = FIRST_STEP

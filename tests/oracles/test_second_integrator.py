@@ -253,10 +253,10 @@ def both(case, contact_time, accuracy, fema_record, seconds=3.0, **options):
 
 def as_the_program(case, *of, **options):
     """The largest difference if uplifts begin alike and the spin on arcs integrates."""
-    gap, run, ours = both(case, *of, integrated_spin=True, begins_at=1e-9, **options)
+    gap, run, ours = both(case, *of, integrated_spin=True, begins_at=1e-12, **options)
     assert run.max_tilt > 0.01
     # at rest p begins with rounding: some uplifts count as passes here
-    assert sum(passed.tilt > 1.01e-9 for passed in run.passes) == len(ours.passes)
+    assert sum(passed.tilt > 1.01e-12 for passed in run.passes) == len(ours.passes)
     return float(np.max(gap))
 
 
@@ -283,5 +283,6 @@ def test_three_seconds(case, contact_time, fema_record):
 def test_what_the_program_leaves_out(case, fema_record):
     """Uplifts that begin with the cube of the time, and a spin on arcs that does not integrate."""
     gap, _, _ = both(case, 2e-3, 4.0, fema_record)
-    # a frame that passes upright at 5e-6 rad within 0.1 s of its uplift; others 3e-8
-    assert np.max(gap) < (3e-5 if case is CASES["frame on arcs"] else 1e-7)
+    # a frame that passes upright at 5e-6 rad within 0.1 s of its uplift 1.7e-8, others 1.2e-9;
+    # with uplifts that begin at 1e-9 rad the same were 3e-5 and 3e-8
+    assert np.max(gap) < (5e-8 if case is CASES["frame on arcs"] else 4e-9)

@@ -27,6 +27,11 @@ LEAST_SHAKEN = 1e-3
 those that take part so much."""
 
 
+UPLIFT_TILT = 1e-12
+"""Tilt with which an uplift to any side begins [rad]: maxima err in proportion to it, by
+less than the steps at `accuracy` 4.
+"""
+
 SYSTEMS_KEPT = 128
 """Records of systems that are kept: to make one takes longer than to
 copy what of it is used."""
@@ -224,6 +229,7 @@ def fill_settings(
     record["step_error"] = step_error(settings)
     record["recontact_tolerance"] = settings.recontact_tolerance
     record["max_events"] = settings.max_events
+    record["uplift_tilt"] = UPLIFT_TILT
     record["initial_rotation"] = settings.initial_rotation
     record["free_vibration"] = longest_free_vibration(structure, settings)
     record["until_rest"] = settings.free_vibration is None
