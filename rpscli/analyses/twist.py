@@ -11,13 +11,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from rpscli.analyses.kernels.twist import TwistRun, follow_twist
+from rpscli.analyses.kernels.twist import SLOW, TwistRun, follow_twist
 from rpscli.analyses.outcomes import OUTCOMES, REASONS, Outcome
 from rpscli.analyses.settings import TimeHistorySettings, require_inputs
 from rpscli.errors import CaseError
@@ -63,9 +64,20 @@ class TwistResult(Shown):
         code = int(self.run.slab["outcome"])
         if code == state.AT_REST and not self.run.columns["max_u"].any():
             return "at_rest"
+        if code == state.SURVIVED and self._is_held:
+            return "stays_tilted"
         if code == state.AT_REST:
             return "survived"
         return OUTCOMES.get(code, "failed")
+
+    @property
+    def _is_held(self) -> bool:
+        """True if friction dampers hold the slab away from upright at the end."""
+        if not any(device.kind == "friction" for device in self.structure.devices):
+            return False
+        displaced = bool(np.hypot(*self.column_ways[-1].T).max() > NOT_MOVED)
+        u_x, u_y = self.run.slab["rate"][:2].tolist()
+        return displaced and math.hypot(u_x, u_y) < SLOW
 
     @property
     def reason(self) -> str | None:
@@ -160,6 +172,9 @@ class TwistResult(Shown):
     def by_column(self) -> list[tuple[str, str, Array]]:
         """Names, units and values of each column: place, factor, largest demands."""
         columns = self.run.columns
+        passes = [("passes", "-", columns["passes"])]
+        if self.structure.bearing.is_spherical:
+            passes = []  # they roll through upright
         return [
             ("x", "m", columns["x"]),
             ("y", "m", columns["y"]),
@@ -170,7 +185,7 @@ class TwistResult(Shown):
             ("rotation_ratio", "-", columns["max_tilt"] / self.run.critical),
             ("least_normal", "N", columns["least_load"]),
             ("largest_normal", "N", columns["most_load"]),
-            ("passes", "-", columns["passes"]),
+            *passes,
         ]
 
 

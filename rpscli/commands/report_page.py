@@ -306,7 +306,7 @@ def _several(
     plan = parts.plan_picture(result, label, out.look)
     all_of = f"{len(motions)} records"
     largest = "Response to the record with the largest rotation of the columns, "
-    figures = ("orbit", "rotation", "storey_shears")
+    figures = ("orbit", "rotation", "storey_shears", "twist")
     scaled = "as they were scaled"
     results = [
         parts.motions_section(motions, [], all_of, out.look, scaled, names),

@@ -119,8 +119,15 @@ class Twist:
 
     def refuse(self, structure: Podium) -> None:
         """Refuse a structure whose slab is not followed as it turns: raises ValueError."""
-        for why in refusals(structure):
-            raise ValueError(f"twist {why}")
+        if found := [*refusals(structure)]:
+            raise ValueError(f"twist {'; and '.join(found)}")
+        unequal = self.scatter > 0.0 or any(factor != 1.0 for factor in self.factors)
+        if unequal and structure.bearing.is_spherical:
+            name = "factors" if self.factors else "scatter"
+            raise ValueError(
+                f"{name} would change nothing: it multiplies the slenderness of the flat"
+                " part, and these ends have none; leave it out"
+            )
         self.factors_of(len(structure.rows) * len(structure.rows_y))
 
 

@@ -44,6 +44,7 @@ from rpscli.report.page import (
     pictures,
 )
 from rpscli.report.table import PAGE_UNITS, Column, Table, large
+from rpscli.report.twist import twist_parts
 from rpscli.sweep.statistics.verdicts import Verdict
 
 MOST_ROWS = 100
@@ -140,6 +141,11 @@ CAPTIONS = {
         " on which they yield."
     ),
     "devices": "Force against displacement of each device between ground and cap beam.",
+    "twist": (
+        "The slab from above: paths of the heads of its columns over the ground, enlarged"
+        " and drawn from their places, the column that moves most in red; below, the turn"
+        " about the vertical."
+    ),
 }
 
 DIGITS = 6
@@ -182,7 +188,10 @@ def page_sections(
         ReportSection("Input", [*inputs]),
         ReportSection("Derived quantities", [*which, *derived_blocks(structure, podium)]),
         *results,
-        ReportSection("Limits of the model", [hidden_table(both=both)]),
+        ReportSection(
+            "Limits of the model",
+            [hidden_table(both=both, turns=structure.twist is not None)],
+        ),
         ReportSection("How to repeat it", repeat),
     ]
 
@@ -286,8 +295,14 @@ def _in_large_units(value: float | None, unit: str) -> tuple[str, str]:
     return _number(number), name
 
 
-def hidden_table(*, both: bool) -> Table:
-    """Limits of the model, in the words of the theory, of one component or of both."""
+REMOVED_BY_TWIST = "does not turn about the vertical", "do not twist"
+"""Assumptions of the theory that `podium.twist` removes."""
+
+
+def hidden_table(*, both: bool, turns: bool = False) -> Table:
+    """Limits of the model, in the words of the theory, of one component or of both, and
+    of a slab that `turns`.
+    """
     text = resources.files("rpscli").joinpath(THEORY).read_text(encoding="utf-8")
     _, plane, space = text.split(f"\n{HIDDEN}")
     heads = []
@@ -298,6 +313,8 @@ def hidden_table(*, both: bool) -> Table:
             [cell.strip() for cell in line.strip("|").split("|")] for line in lines
         )
         rows += [row for row in found if not (both and row[0] == "plane motion")]
+    if turns:
+        rows = [row for row in rows if not row[0].endswith(REMOVED_BY_TWIST)]
     bare = [[cell.replace("`", "") for cell in row[:3]] for row in rows]
     return Table.of_texts(heads[:3], bare, words=3)
 
@@ -368,7 +385,8 @@ def response_section(
     ]
     shown = [Picture(each, caption) for caption, each in drawn]
     shown += [plan] if plan else []
-    return ReportSection(title, [*timehistory.demand_tables(result, PAGE_UNITS), *shown])
+    tables = timehistory.demand_tables(result, PAGE_UNITS)
+    return ReportSection(title, [*tables, *twist_parts(result), *shown])
 
 
 def plan_picture(result: TimeHistoryResult, label: str, look: Look) -> Picture | None:

@@ -9,19 +9,25 @@ import numpy as np
 
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.twist import TwistResult
-from rpscli.report.table import Column, Part, Table, shown
+from rpscli.report.table import Column, Table, shown
 
 DEPENDS = (
     "the turn depends on podium.twist.pivot_friction, scatter and"
     " superstructure.torsion.eccentricity, whose sizes, signs and places are not known: run"
     " both signs and five seeds"
 )
+DEPENDS_WITHOUT_SCATTER = (
+    "the turn depends on podium.twist.pivot_friction and"
+    " superstructure.torsion.eccentricity, whose sizes and signs are not known: run both"
+    " signs"
+)
+"""Of ends without a flat part, whose slenderness does not scatter."""
 
 MOST_COLUMNS = 16
 """Columns up to which each has a row in a terminal; of more, those that move most."""
 
 
-def twist_parts(result: TimeHistoryResult) -> Iterator[Part]:
+def twist_parts(result: TimeHistoryResult) -> Iterator[Table | str]:
     """The slab's turn, a row each column, and what all of it depends on."""
     twist = result.twist
     if twist is None:
@@ -33,14 +39,32 @@ def twist_parts(result: TimeHistoryResult) -> Iterator[Part]:
     yield (
         f"the slab turns by {shown(1e3 * twist.max_twist)} mrad at most, by"
         f" {shown(1e3 * twist.residual_twist)} mrad at the end; its column that moves most"
-        f" moves {shown(twist.max_corner_displacement)} m{told}"
+        f" moves {shown(1e3 * twist.max_corner_displacement)} mm{told}"
     )
     yield columns_table(twist)
+    count = len(twist.run.columns)
+    if count > MOST_COLUMNS:
+        yield (
+            f"{MOST_COLUMNS} of {count} columns, those that move most; all are in"
+            " columns.csv and the JSON document"
+        )
+    if twist.structure.twist and twist.structure.twist.seats is not None:
+        yield (
+            "N is the weight on a column and what its seat takes of the warped slab,"
+            " without the overturning moment of the building"
+        )
     yield (
         "rotations above that have limits are those of the worst column; all other demands"
-        " above are of the slab's centre alone, which does not turn"
+        " above, forces of columns among them, are of the slab's centre alone, as if it"
+        " did not turn"
     )
-    yield DEPENDS
+    yield depends(twist)
+
+
+def depends(twist: TwistResult) -> str:
+    """What the turn depends on that is not known."""
+    spherical = twist.structure.bearing.is_spherical
+    return DEPENDS_WITHOUT_SCATTER if spherical else DEPENDS
 
 
 def columns_table(twist: TwistResult) -> Table:
@@ -48,21 +72,26 @@ def columns_table(twist: TwistResult) -> Table:
     order = np.argsort(-twist.run.columns["max_u"], kind="stable")
     if len(order) <= MOST_COLUMNS:
         order = np.arange(len(order))
-    rows = []
-    for i in order[:MOST_COLUMNS].tolist():
-        column = twist.run.columns[i]
-        rows.append([
-            f"{i + 1}", shown(float(column["x"])), shown(float(column["y"])),
-            shown(float(twist.run.factors[i])), shown(float(column["max_u"])),
-            shown(float(column["max_tilt"] / twist.run.critical[i])),
-            shown(1e-3 * float(column["least_load"])),
-            shown(1e-3 * float(column["most_load"])), f"{column['passes']}",
-        ])  # fmt: skip
-    heads = (
-        "column", "x m", "y m", "slenderness times", "u m", "rotation ratio", "least N kN",
-        "largest N kN", "passes",
-    )  # fmt: skip
-    return Table.of_texts(heads, rows, words=0)
+    order = order[:MOST_COLUMNS]
+    columns = twist.run.columns[order]
+    numbers = {
+        "x m": columns["x"],
+        "y m": columns["y"],
+        "slenderness times": twist.run.factors[order],
+        "u mm": 1e3 * columns["max_u"],
+        "rotation ratio": columns["max_tilt"] / twist.run.critical[order],
+    }
+    of = twist.structure
+    if of.twist and of.twist.seats is not None:
+        numbers["least N kN"] = 1e-3 * columns["least_load"]
+        numbers["largest N kN"] = 1e-3 * columns["most_load"]
+    if of.bearing.is_spherical:
+        del numbers["slenderness times"]
+    else:
+        numbers["passes"] = columns["passes"]
+    cells = [[f"{i + 1}" for i in order.tolist()]]
+    cells += [[*map(shown, each.tolist())] for each in numbers.values()]
+    return Table.of_texts(("column", *numbers), [*zip(*cells, strict=True)], words=0)
 
 
 def twist_document(twist: TwistResult | None) -> dict[str, Any] | None:
@@ -76,7 +105,7 @@ def twist_document(twist: TwistResult | None) -> dict[str, Any] | None:
         "worst_column": twist.worst_column,
         "energy": twist.energies,
         "columns": columns,
-        "depends": DEPENDS,
+        "depends": depends(twist),
     }
 
 

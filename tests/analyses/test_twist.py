@@ -7,6 +7,7 @@ import rpscli
 from rpscli.analyses.twist import twist_history
 from rpscli.case.case import parse_case
 from rpscli.errors import RpsError
+from rpscli.report.twist import columns_table, depends
 
 CASE = """\
 rps: 1
@@ -26,6 +27,11 @@ podium:
   plan: {rows: [0 m, 10 m], y: {rows: [0 m, 10 m]}}
   twist: {scatter: {slenderness: 0.02, seed: 1}, pivot_friction: 1 mm, seats: 5 mm}
 """
+
+
+SPHERICAL = [
+    ("slenderness: 0.15,", "slenderness: 0,"), ("curvature_ratio: 0.5", "curvature_ratio: 1.5")
+]  # fmt: skip
 
 
 def case(*changes, text=CASE):
@@ -119,6 +125,18 @@ def test_dampers_at_corners_and_in_the_middle():
         ([("seats: 5 mm", "seats: 0.1 mm")], "seats"),
         ([("scatter: {slenderness: 0.02, seed: 1}", "factors: [1, 1.02]")], "factors"),
         ([("eccentricity: [0.05, 0.05]", "eccentricity: [0.6, 0]")], "eccentricity"),
+        (SPHERICAL, "scatter would change nothing"),
+        (
+            [("scatter: {slenderness: 0.02, seed: 1}", "factors: [1, 1, 1, 1.1]"), *SPHERICAL],
+            "factors would change nothing",
+        ),
+        (
+            [
+                ("seats: 5 mm}", "seats: 5 mm}\n  contact: {kind: edges, settlement: 1 mm}"),
+                ("period: 0.3 s", "period: 0.3 s\n  vertical_period: 0.1 s"),
+            ],
+            "compliant .*; and .*vertical_period",
+        ),
     ],
 )  # fmt: skip
 def test_what_is_not_followed_is_refused_with_the_reason(changes, words):
@@ -144,6 +162,23 @@ def test_factors_go_to_the_columns_row_by_row():
     assert run.factors.tolist() == [1.02, 0.99, 1.01, 0.98]
     assert run.places.tolist() == [[-5, -5], [5, -5], [-5, 5], [5, 5]]
     np.testing.assert_allclose(run.columns["tan_a"], 0.15 * run.factors, rtol=1e-12)
+
+
+def test_a_slab_on_spherical_ends_that_friction_holds_stays_tilted():
+    """No flat part: neither factors of the slenderness nor passes are told."""
+    changes = [
+        ("scatter: {slenderness: 0.02, seed: 1}, ", ""),
+        *SPHERICAL,
+        ("  twist:", "  devices: [{kind: friction, force: 300 kN}]\n  twist:"),
+    ]
+    of = case(*changes)
+    found = rpscli.time_history(of.structure, pair(), of.analysis)
+    assert found.outcome == found.twist.outcome == "stays_tilted"
+    assert "passes" not in {name for name, *_ in found.twist.by_column()}
+    heads = columns_table(found.twist).heads
+    assert "passes" not in heads
+    assert "slenderness times" not in heads
+    assert "scatter" not in depends(found.twist)
 
 
 def test_a_scatter_of_many_columns_is_what_it_says():

@@ -59,6 +59,22 @@ def test_what_is_told(turns, rps):
     assert "is not computed" not in rps("check", "turns.yaml").stderr
 
 
+def test_the_page_shows_the_turn_and_does_not_assume_that_there_is_none(
+    turns, rps, figures
+):
+    rps("report", "turns.yaml", "-o", "page.html", exit_code=10)
+    text = (turns / "page.html").read_text("utf-8")
+    for words in (
+        "the slab turns by",
+        "run both signs",
+        "The slab from above",
+        "plane motion",
+    ):
+        assert (words in text) == (words != "plane motion")
+    assert "does not turn about the vertical" not in text
+    assert "do not twist" not in text
+
+
 def test_a_study_of_seeds_judges_the_turn(turns, rps_json):
     text = STUDY + "limits: {corner_factor: 1.0001}\n"
     (turns / "seeds.yaml").write_text(text, "utf-8")
