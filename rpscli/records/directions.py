@@ -26,12 +26,12 @@ HORIZONTAL = RecordDirection(vertical=False)
 _VERTICAL_WORDS = re.compile(
     r"up|ud|updn|updo|updown|upward\w*|dwn|down|downward\w*|vrt|vrtcl|vert"
     r"|verti[ck]\w*|vtcl"
-    r"|vertic\w*|haut|hoch|senkrecht|lotrecht|arriba|alto|dusey|dikey|dus|верт\w*"
+    r"|vertic\w*|haut|hoch|senkrecht|lotrecht|arriba|alto|[cz]enith?|hohe|gravity|dusey|dikey|dus|верт\w*"
     r"|отвесн\w*"
     r"|上下|垂直|竖直|竖向|鉛直|铅直|수직|上|joge|jouge|enchoku|chui?zhi|shuxiang|shangxia"
     r"|katak\w*|κατακ\w*|pionow\w*|svisl\w*|vertikaln\w*|okomit\w*|verdikal|lodret"
     r"|fugg\w*"
-    r"|thangdung|qaim|tegak|عمودي|אנכי|nadir|zenith"
+    r"|thangdung|qaim|tegak|عمودي|אנכי|nadir"
 )
 """Words for up and down, of two letters and more, that say nothing else."""
 _VERTICAL_SIGNS = re.compile(
@@ -57,6 +57,8 @@ _AXES = {
     **_at(90.0, "ostwest esteoeste dogubati вост oe eo"),
 }
 """Words of both ends of an axis, at the azimuth of one of them."""
+_UP_AND_DOWN = frozenset(("ud", "du", "zd", "vt"))
+"""Both ends of the vertical axis."""
 _BEARING = re.compile(r"([ns])(\d{1,2})([ew])")
 _NAMED = re.compile(
     r"x|y|l|t|r|h|h1|h2|nb|dx|fn|fp|long\w*|trans\w*|radial|tran|hcomp|horiz\w*|yatay"
@@ -96,6 +98,25 @@ def direction_of(text: str) -> RecordDirection | None:
     if (match := _AZIMUTH.fullmatch(word)) and float(match[1]) <= 360.0:
         return RecordDirection(vertical=False, azimuth=float(match[1]))
     return HORIZONTAL if _NAMED.fullmatch(word) else None
+
+
+_HALVES = re.compile(
+    "|".join(
+        rf"(?<![^\W_]){word[0]}[-_]{word[1]}(?![^\W_])"
+        for word in sorted({*_AXES, *_UP_AND_DOWN})
+        if len(word) == 2 and word.isascii()
+    ),
+    re.IGNORECASE,
+)
+
+
+def with_axes(name: str) -> str:
+    """A name in which an axis of two letters is one word.
+
+    >>> with_axes("STA_E-W.txt"), with_axes("a_N_S"), with_axes("v-1_X-Y")
+    ('STA_EW.txt', 'a_NS', 'v-1_X-Y')
+    """
+    return _HALVES.sub(lambda match: match[0][0] + match[0][2], name)
 
 
 def says_up(text: str) -> bool:
@@ -147,6 +168,7 @@ def direction_in(name: str) -> RecordDirection | None:
     """The direction that a name is, that stands behind `acc` in it, as in `acc_ns`, or is
     its last word, as in `Acc. UD`.
     """
+    name = with_axes(name)
     if (found := direction_of(name)) is not None:
         return found
     if match := _QUALIFIED.fullmatch(name.strip()):

@@ -7,36 +7,40 @@ a vertical one. Where neither names nor headers tell which, it is asked for.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path, PurePath
 
 from rpscli.errors import RecordError
 from rpscli.records.directions import (
-    RecordDirection,
     direction_in,
     direction_of,
     directions_of,
     says_up,
+    with_axes,
 )
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.recordings import channel_titles, clusters, stated
+from rpscli.records.recordings import channel_titles, clusters
 from rpscli.records.source import FILE, Source
 
 _WORD = re.compile(r"[^\W_]+")
 _TAIL = re.compile(r"(.*?)([^\W\d_]+|\d+)")
+_HEAD = re.compile(r"([^\W\d_]{1,2})(\d+)")
 _MANY = 3
 
 
 def forms_of(name: str) -> dict[str, str]:
     """Words of a name, or ends of words, by the name with a blank in their place."""
     found = {}
-    name = re.sub(r"[-_ ]+", "_", name).replace("_.", ".")
+    name = re.sub(r"[-_ ]+", "_", with_axes(name)).replace("_.", ".")
     for match in _WORD.finditer(name):
         start, end = match.span()
         tail = _TAIL.fullmatch(match[0])
         behind = len(tail[1]) if tail else 0
         for at in {start, start + behind, end - 1}:
             found[f"{name[:at]} {name[end:]}"] = name[at:end]
+        if head := _HEAD.fullmatch(match[0]):
+            found[f"{name[:start]} {head[2]}{name[end:]}"] = head[1]
     return found
 
 
@@ -57,6 +61,7 @@ def direction_by_name(name: str) -> str:
     >>> direction_by_name("run_001.txt"), direction_by_name("model_d.txt")
     ('', '')
     """
+    name = with_axes(name)
     stem = PurePath(name).stem
     ending = PurePath(name).suffix[1:].rstrip("0123456789")
     if len(ending) == 2 and direction_of(ending) is not None:
@@ -82,8 +87,10 @@ def _is_clear(word: str) -> bool:
 
 
 def require_two(motions: Mapping[Source, GroundMotion], folder: Path | None) -> None:
-    """Refuse three motions of one length and step and one name, or recording, of which
-    not all are told to be horizontal.
+    """Refuse three motions of one name, or recording, that are nearly as long.
+
+    A recording has two horizontal components: of three, one is vertical, or they are
+    turned copies.
     """
     real = {
         of: motion
@@ -91,43 +98,93 @@ def require_two(motions: Mapping[Source, GroundMotion], folder: Path | None) -> 
         if of.scheme == FILE and "channel" not in of.values
         and "not a recording" not in motion.description.lower()
     }  # fmt: skip
-    for three, words in _threes(real, folder):
+    for three in _threes(real, folder):
         told = [motions[of].recording for of in three]
         if len({each.station for each in told if each.station}) > 1:
             continue
         events = {each.event or each.origin for each in told}
         if len(events - {""}) > 1:
             continue
-        if not _all_horizontal(words, [stated(of, folder).direction for of in three]):
-            names = ", ".join(PurePath(of.place).name for of in three)
-            raise RecordError(
-                f"{names}: are of one length, as two horizontal components and a vertical"
-                " one are, and neither names nor headers tell which is vertical. Call"
-                " that one ...-UP, or name the records that are meant one by one"
-            )
+        names = ", ".join(PurePath(of.place).name for of in three)
+        raise RecordError(
+            f"{names}: are of one length, as two horizontal components and a vertical"
+            " one are, and neither names nor headers tell which is vertical. Call"
+            " that one ...-UP, or name the records that are meant one by one"
+        )
+
+
+NEARLY = 0.02
+"""Of the length: components are cut to lengths that differ by less."""
 
 
 def _threes(
     motions: Mapping[Source, GroundMotion], folder: Path | None
-) -> Iterable[tuple[list[Source], list[str]]]:
-    """Three sources of one length and step, of one name or recording, with words."""
+) -> Iterator[list[Source]]:
+    """Three sources of one step and nearly one length, of one name or recording."""
     groups: dict[tuple[object, ...], list[tuple[Source, str]]] = {}
     number = dict(zip(motions, clusters([*motions], folder), strict=True))
     for of, motion in motions.items():
-        size = (motion.npts, round(motion.dt, 7), str(PurePath(of.place).parent))
+        size = (round(motion.dt, 7), str(PurePath(of.place).parent))
         name = PurePath(of.place).name
         for key, word in forms_of(name).items():
             groups.setdefault((*size, key), []).append((of, word))
         word = direction_by_name(name)
         groups.setdefault((*size, number[of]), []).append((of, word))
     counted = _of_a_series(motions)
-    for members in groups.values():
-        words = [word for _, word in members]
-        if len(members) != _MANY or _have_names_of_their_own(members):
+    for every in groups.values():
+        for members in _nearly_as_long(every, motions):
+            if len(members) != _MANY or _have_names_of_their_own(members):
+                continue
+            by_number = all(word.isdigit() for _, word in members)
+            if not (by_number and counted & dict(members).keys()):
+                yield [of for of, _ in members]
+    yield from _thirds(motions)
+
+
+def _thirds(motions: Mapping[Source, GroundMotion]) -> Iterator[list[Source]]:
+    """Both horizontal components of a beginning, and a third file of it whose rest is no
+    horizontal direction.
+    """
+    pairs: dict[tuple[str, str], list[Source]] = {}
+    level = {}
+    for of in motions:
+        path = PurePath(with_axes(of.place))
+        word = direction_by_name(path.name)
+        way = direction_of(word) if word else None
+        if way is not None and not way.vertical:
+            level[of] = way
+            beginning = path.name[: path.name.rindex(word)]
+            pairs.setdefault((str(path.parent), beginning), []).append(of)
+    for (folder, beginning), members in pairs.items():
+        if len(members) != _MANY - 1 or not beginning:
             continue
-        by_number = all(word.isdigit() for word in words)
-        if not (by_number and counted & dict(members).keys()):
-            yield [of for of, _ in members], words
+        longest = max(motions[of].npts for of in members)
+        for of, motion in motions.items():
+            path = PurePath(with_axes(of.place))
+            rest = path.stem.removeprefix(beginning)
+            near = abs(motion.npts - longest) <= NEARLY * longest
+            of_it = path.name.startswith(beginning) and str(path.parent) == folder
+            if near and of_it and of not in level and len(rest) <= _LONGEST_WORD:
+                yield [*members, of]
+
+
+_LONGEST_WORD = 10
+"""Letters of a word that may be a direction."""
+
+
+def _nearly_as_long(
+    members: Sequence[tuple[Source, str]], motions: Mapping[Source, GroundMotion]
+) -> Iterator[list[tuple[Source, str]]]:
+    """Members in groups whose lengths follow each other closely."""
+    ordered = sorted(members, key=lambda each: motions[each[0]].npts)
+    group = ordered[:1]
+    for before, each in pairwise(ordered):
+        longest = motions[each[0]].npts
+        if longest - motions[before[0]].npts > NEARLY * longest:
+            yield group
+            group = []
+        group.append(each)
+    yield group
 
 
 def _have_names_of_their_own(members: Iterable[tuple[Source, str]]) -> bool:
@@ -149,23 +206,6 @@ def _of_a_series(sources: Iterable[Source]) -> set[Source]:
             if word.isdigit():
                 series.setdefault((str(path.parent), form), []).append(of)
     return {of for members in series.values() if len(members) > _MANY for of in members}
-
-
-def _all_horizontal(words: Sequence[str], stated_ones: Sequence[str]) -> bool:
-    """True if all of several components are told to be horizontal, none along another."""
-    ways = directions_of(words)
-    by_header = directions_of(stated_ones)
-    known = [b if b is not None else a for a, b in zip(ways, by_header, strict=True)]
-    if any(way is None or way.vertical for way in known):
-        return False
-    return not _along_another(known)
-
-
-def _along_another(ways: Iterable[RecordDirection | None]) -> bool:
-    azimuths = [
-        way.azimuth % 180.0 for way in ways if way is not None and way.azimuth is not None
-    ]
-    return len({*azimuths}) < len(azimuths)
 
 
 def require_horizontal_titles(sources: Iterable[Source], folder: Path | None) -> None:

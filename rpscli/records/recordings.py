@@ -36,7 +36,7 @@ from typing import TYPE_CHECKING, Literal
 
 from rpscli.errors import RecordError
 from rpscli.records import sets
-from rpscli.records.directions import directions_of
+from rpscli.records.directions import directions_of, with_axes
 from rpscli.records.ground_motion import UNKNOWN, Recording
 from rpscli.records.measures import Of
 from rpscli.records.source import FILE, SET, Source
@@ -314,7 +314,7 @@ def _family(of: Source, place: str, apart: set[str]) -> str:  # noqa: PLR0911 --
         return azimuth[1]
     if number := _PEER_NUMBER.fullmatch(name):
         return str(folder / number[1].upper())
-    word = _LAST_WORD.fullmatch(PurePath(name).stem)
+    word = _LAST_WORD.fullmatch(PurePath(with_axes(name)).stem)
     if word and word[2] and _WAY.fullmatch(word[2]):
         return str(folder / word[1])
     return str(folder / _COMPONENT.sub("", name))
@@ -335,10 +335,10 @@ def verticals(sources: Iterable[Source], folder: Path | None) -> list[Source]:
         of: match
         for of in every
         if single[of.place] == 1
-        and (match := _VERTICAL.fullmatch(of.place))
+        and (match := _VERTICAL.fullmatch(with_axes(of.place)))
         and not _LEVEL_WORD.search(match[1])
     }
-    others = tuple(of.place for of in every if of not in marked)
+    others = tuple(with_axes(of.place) for of in every if of not in marked)
     upright = _upright_by_word(every, folder)
     found = [
         of
@@ -384,7 +384,7 @@ def _upright_by_word(sources: Iterable[Source], folder: Path | None) -> set[str]
     """Places of files whose last word says up, beside others of the same beginning."""
     families: dict[str, list[tuple[str, str]]] = {}
     for of in sources:
-        path = PurePath(of.place)
+        path = PurePath(with_axes(of.place))
         match = _LAST_WORD.fullmatch(path.stem) if of.scheme == FILE else None
         if match:
             beginning = str(path.with_name(match[1] or match[3]))

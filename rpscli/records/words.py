@@ -172,6 +172,37 @@ EARTHQUAKES = _vocabulary(
 )
 """What is said of the earthquake."""
 
+PLACES = _vocabulary(
+    "location loc position installation sensor instrument structure placement mounted"
+    " mounting lage standort aufstellung ubicacion ubicazione emplacement posizione"
+    " posicion"
+    " posicao konum konumu yeri расположение место установка 設置 设置 位置 設置場所 θεση"
+    " umiejscowienie umisteni"
+)
+"""What is said of where an instrument stands."""
+
+STRUCTURES = _vocabulary(
+    "roof rooftop basement cellar attic mezzanine penthouse terrace storey story floor"
+    " building bridge deck pier pylon abutment midspan girder dam crest spillway tower"
+    " chimney tunnel slab column beam foundation pile underground"
+    " azotea techo sotano edificio puente presa pila cubierta terraza"
+    " toit sous-sol immeuble pont barrage etage terrasse"
+    " dach dachgeschoss keller geschoss stockwerk gebaude brucke talsperre"
+    " copertura tetto interrato piano edificio ponte diga terrazzo"
+    " cati bodrum bina kopru baraj kule zemin-kat"
+    " крыша подвал этаж здание мост плотина"
+    " 屋上 地下室 地階 階 建物 橋 ダム 屋顶 楼 大坝 桥 층 옥상"
+)
+"""Buildings, dams and bridges, and parts of them."""
+
+STOREYS = re.compile(
+    r"(?<![^\W_])(?:[1-9]\d?f|b\d{1,2}f?|rf|phf?|l(?:evel|vl)?[ _-]?[1-9]\d?"
+    r"|\d{1,2}\.?[ _-]?(?:og|ug|stock|etage|kat|piano|th|st|nd|rd)"
+    r"|(?:floor|storey|story|level|kat|etage|piso|piano)[ _-]?-?\d{1,2}"
+    r"|zemin[ _-]kat|sous[ _-]sol|eg|\d{1,2}[ _-]?(?:storey|story|floor)s?)(?![^\W_])"
+)
+"""A storey of a building by its number, folded."""
+
 COUNTRIES = _vocabulary(
     "turkey turkiye taiwan japan italy italia iran chile mexico greece zealand nepal"
     " usa ca"
@@ -186,6 +217,32 @@ NO_NAMES = _vocabulary(
     " august september october november december"
 )
 """Words beside the name of an earthquake."""
+
+OTHER_QUANTITIES = _vocabulary(
+    "velocity velocities vel velocidad velocita velocidade vitesse geschwindigkeit hiz"
+    " скорость sebesseg predkosc rychlost snelheid ταχυτητα 速度 sokudo sudu kine"
+    " displacement displacements disp displ deplacement verschiebung desplazamiento"
+    " spostamento deslocamento yerdegistirme degistirme перемещение смещение"
+    " przemieszczenie"
+    " 変位 变位 位移 jerk strain dehnung deformacion counts cuentas coups zahlimpulse"
+    " digits volt volts"
+)
+"""Quantities that are no acceleration, and readings of instruments."""
+BESIDE_QUANTITIES = _vocabulary(
+    "type data signal quantity quantite grandezza magnitud kind channel of the du de der"
+    " in unit units unidad unidades einheit birim unita единица единицы soil sol suelo"
+    " ground boden zemin kaydi kayit record recording zapis запись s sec с сек"
+)
+"""Words beside them that say nothing else."""
+
+NO_SERIES = _vocabulary(
+    "spectrum spectra spectral spektr spektral spektrum spectre spettro espectro fourier"
+    " fas psa psv uhs arias"
+    " husid спектр スペクトル 谱 譜 transfer autocorrelation correlation"
+    " eigenvalue eigenvalues cyclic protocol pushover hysteresis wavelet coefficients"
+    " gmpe envelope"
+)
+"""Tables of other things than a motion over time."""
 
 UNITS = _vocabulary(
     "unit units unidad unidades unita unite unites einheit einheiten birim birimi единица"
