@@ -63,6 +63,7 @@ from rpscli.records.source import (
     is_file,
     split_options,
 )
+from rpscli.records.words import stands_in_a_structure
 
 _MAKERS: dict[str, Callable[[Source], GroundMotion]] = {
     SET: sets.load_component,
@@ -361,14 +362,12 @@ def _once(
 
 
 _BELOW_BY_NAME = re.compile(
-    r"bore-?hole|down-?hole|(?<![A-Za-z])(?:GL-?[1-9]|bottom|DH\d*|BH\d+|bedrock"
-    r"|pozz?o|forage"
-    r"|bohrloch|sondaj|kuyu|roof|basement|\d+(?:st|nd|rd|th)?[_ -]?floor|cati"
-    r"|bodrum)(?![A-Za-z])"
-    r"|(?<=[_ .-])-?\d+m(?![A-Za-z])|скважин|крыша",
+    r"bore-?hole|down-?hole|in-?hole|(?<![A-Za-z])(?:GL-?[1-9]|bottom|DH\d*|BH\d+|bedrock"
+    r"|pozz?o|forage|bohrloch|sondaj|kuyu)(?![A-Za-z])"
+    r"|(?<=[_ .-])-?\d+m(?![A-Za-z])|скважин",
     re.IGNORECASE,
 )
-"""Words in names of files of instruments below the ground, or in buildings."""
+"""Words in names of files of instruments below the ground."""
 
 
 def _above_ground(
@@ -379,6 +378,7 @@ def _above_ground(
         each
         for each in single
         if _BELOW_BY_NAME.search(PurePath(each.place).stem)
+        or stands_in_a_structure(PurePath(each.place).stem)
         or stated(each, folder).in_borehole
     ]
     if not below or len(below) == len(single):

@@ -40,8 +40,8 @@ from rpscli.records.directions import directions_of, with_axes
 from rpscli.records.ground_motion import UNKNOWN, Recording
 from rpscli.records.measures import Of
 from rpscli.records.source import FILE, SET, Source
-from rpscli.records.when import days_of, seconds_of
-from rpscli.records.words import COUNTRIES, NO_NAMES, words_of
+from rpscli.records.when import days_of, either_seconds, seconds_of
+from rpscli.records.words import COUNTRIES, NO_NAMES, NOT_OF_THE_MOTION, words_of
 
 if TYPE_CHECKING:
     from rpscli.records.formats.record_text import Channel
@@ -130,18 +130,24 @@ def _event_names(recording: Recording) -> set[str]:
     """
     if match := _NUMBERED.fullmatch(recording.event):
         return {f"event {match[1].upper()} {match[2]}"}
+    if _IDENTIFIED.fullmatch(recording.event):
+        return {f"event {recording.event.lower()}"}
+    words = {*words_of(recording.event)}
+    if words and words <= NOT_OF_THE_MOTION and not days_of(recording.event):
+        return {f"event {recording.event}"}  # Mw 6.5, depth 10 km
     named = earthquake(recording.event)
     names = {f"event {named}"} if _YEAR.search(named) else set[str]()
-    seconds = seconds_of(recording.origin)
-    if seconds is not None:
+    times = either_seconds(recording.origin)
+    for seconds in times:
         names |= {f"event at {seconds // 60}", f"event about {(seconds + 30.0) // 60}"}
-    elif recording.origin:
+    if recording.origin and not times:
         names.add(f"event at {recording.origin}")
-    elif named:
+    elif named and not times:
         names.add(f"event {named}")
     return names | _by_words(recording)
 
 
+_IDENTIFIED = re.compile(r"\s*[A-Za-z]{0,4}\W?\d{4,}\w*\s*")
 _NUMBERED = re.compile(r"\s*(EQID|RSN)\W*(\d+)\s*", re.IGNORECASE)
 
 

@@ -111,7 +111,7 @@ NOT_OF_THE_MOTION = _vocabulary(
     " duration dauer"
     " duracion duree durata sure suresi длительность usable bandwidth nyquist checksum"
     " crc"
-    " az fc flo fhi rms std iso odak derinligi back backazimuth incidence ray sv velocity"
+    " km az fc flo fhi rms std iso odak derinligi back backazimuth incidence ray sv velocity"
     " vel displacement disp rupture rvt seed"
 )
 """What is said of the earthquake, the station, the instrument, the file."""
@@ -202,6 +202,62 @@ STOREYS = re.compile(
     r"|zemin[ _-]kat|sous[ _-]sol|eg|\d{1,2}[ _-]?(?:storey|story|floor)s?)(?![^\W_])"
 )
 """A storey of a building by its number, folded."""
+
+
+_NAMES_OF_STREETS = frozenset(
+    ("road", "rd", "street", "school", "park", "avenue", "lane")
+)
+_FREE_FIELD = re.compile(
+    r"free[\s_-]?field|ground surface|freifeld|campo libero|campo libre"
+)
+
+
+def says_free_field(text: str) -> bool:
+    """True of words for the free surface of the ground."""
+    return _FREE_FIELD.search(folded(text)) is not None
+
+
+def says_structure(text: str) -> bool:
+    """True of words for a place in a structure, not of streets that are called so.
+
+    >>> [says_structure(text) for text in ("Dachgeschoss", "B2F", "Tower Bridge Road", "Pierce")]
+    [True, True, False, False]
+    """
+    words = words_of(text)
+    if says_free_field(text) or (words[-1:] and words[-1] in _NAMES_OF_STREETS):
+        return False
+    inside = any(
+        word in STRUCTURES or (not word.isascii() and _begins(word, STRUCTURES))
+        for word in words
+    )
+    return inside or STOREYS.search(folded(text)) is not None
+
+
+def stands_in_a_structure(name: str) -> bool:
+    """True of the name of a file that says a place in a structure.
+
+    >>> [stands_in_a_structure(name) for name in ("st_10F_E", "ABC_roof", "CHB002", "L12")]
+    [True, True, False, False]
+    """
+    plain = folded(name)
+    inside = any(word in STRUCTURES for word in words_of(name)[1:])
+    return inside or re.search(rf"(?<=[^a-z0-9]){STOREYS.pattern}", plain) is not None
+
+
+ORIGINS = EARTHQUAKES | _vocabulary(
+    "origin origine origen origem ot herd herdzeit ursprung ursprungszeit очаге очага"
+    " 発震 発震時 発生 发震 olus olusum olusumu"
+)
+"""What is said of the time of the earthquake."""
+DATES = _vocabulary("date datum fecha data tarih tarihi дата 日付 日期 dato jour")
+OF_THE_FILE = _vocabulary(
+    "start begin beginning first trigger triggered record recorded recording registro"
+    " process processed processing created creation printed converted exported export"
+    " file last end stop sample accessed download downloaded modified version release"
+    " kayit запис начало 記録 tetik erstellt aufzeichnung beginn anfang debut"
+    " enregistrement inizio inicio fin"
+)
+"""What is said of times that are not those of the earthquake."""
 
 COUNTRIES = _vocabulary(
     "turkey turkiye taiwan japan italy italia iran chile mexico greece zealand nepal"

@@ -32,9 +32,11 @@ from rpscli.records.words import (
     LIMITS,
     NOT_OF_THE_MOTION,
     PEAKS,
+    PLACES,
     SAMPLING,
     SERIALS,
     STEPS,
+    STRUCTURES,
     TIMES,
     UNITS,
     folded,
@@ -73,7 +75,9 @@ _PART = re.compile(
     r"[;|\t]|,(?=\s*[^\W\d][^:=,]{0,60}[:=])|\s{2,}(?=[^\W\d][^:=]{0,60}[:=])"
 )
 _TIMES = re.compile(
-    r"\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}(?:T(?=\d))?"
+    r"\d{4}年\s?\d{1,2}月\s?\d{1,2}日|\d{1,2}時\s?\d{2}分(?:\s?\d{2}(?:\.\d+)?秒)?"
+    r"|\b\d{1,2}h\s?\d{2}m(?:in)?(?:\s?\d{2}s)?"
+    r"|\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}(?:T(?=\d))?"
     r"|\d{1,2}:\d{2}(?!\d)(?::\d{2}(?:\.\d*)?)?Z?"
     r"|\b\d{1,2}\.? [^\W\d]{3,9}\.?,? \d{4}\b|\b[^\W\d]{3,9}\.? \d{1,2},? \d{4}\b"
 )
@@ -102,6 +106,10 @@ _RAW = re.compile(
     r"|no corregid\w+|sin corregir|ham (?:veri|kayit)|duzeltilmemis|brut"
     r"|необработан\w+)\b"
 )
+
+
+OF_SOMETHING_ELSE = NOT_OF_THE_MOTION | LIMITS | DIRECTIONS | PLACES | STRUCTURES
+"""Keys whose numbers do not bear on the values."""
 
 
 class Said(NamedTuple):
@@ -288,7 +296,7 @@ def _is_understood(said: Said, facts: Facts) -> bool:
         return said.number in (facts.values.size, facts.numbers)
     if speaks_of(said.key, FACTORS) and not speaks_of(said.key, LIMITS):
         return False
-    other = speaks_of(said.key, NOT_OF_THE_MOTION | LIMITS | DIRECTIONS)
+    other = speaks_of(said.key, OF_SOMETHING_ELSE)
     return other or _is_of_time(said, facts)
 
 

@@ -7,8 +7,22 @@ from collections.abc import Iterable
 
 from rpscli.records.directions import direction_of, says_up
 from rpscli.records.ground_motion import Recording
-from rpscli.records.when import seconds_of
-from rpscli.records.words import DIRECTIONS, EARTHQUAKES, folded, speaks_of, words_of
+from rpscli.records.when import days_of, has_clock, seconds_of
+from rpscli.records.words import (
+    DATES,
+    DIRECTIONS,
+    EARTHQUAKES,
+    OF_THE_FILE,
+    ORIGINS,
+    PLACES,
+    STRUCTURES,
+    TIMES,
+    folded,
+    says_free_field,
+    says_structure,
+    speaks_of,
+    words_of,
+)
 
 _VALUE = r"\s*[:=]\s*([^;|#]*?)\s*(?=$|[;|#]|,\s*[A-Za-z ]+[:=])"
 _KEYS = {
@@ -41,6 +55,7 @@ def recording_of(lines: Iterable[str]) -> Recording:
     A title is `event, date, station, direction`, or of the first collection `EVENT date
     time, STATION, direction (agency)`. What stands behind a key counts before it.
     """
+    lines = [*lines]
     said: dict[str, str] = {}
     titled: Recording | None = None
     place = ""
@@ -57,6 +72,10 @@ def recording_of(lines: Iterable[str]) -> Recording:
         for name, text in _of_the_event(line).items():
             said.setdefault(name, text)
         titled = titled or (None if said else titled_recording(line))
+    if "origin" in said and not days_of(said["origin"]):
+        del said["origin"]  # a clock time, whose date stands elsewhere
+    if "origin" not in said and (titled is None or not titled.origin):
+        said |= _origin_among(lines)
     found = (titled or Recording())._replace(**said)  # type: ignore[arg-type]
     if place:
         found = found._replace(station=f"{found.station} {place}".strip())
@@ -64,19 +83,45 @@ def recording_of(lines: Iterable[str]) -> Recording:
 
 
 _ID = re.compile(r"^\W*(EQID|RSN)\b[^\d\w]*(\d+)\W*$", re.IGNORECASE)
+_KEYED = re.compile(r"^\W*([^\d:=]{2,40}?)\s*[:=]\s*(.*\S)")
 
 
 def _of_the_event(line: str) -> dict[str, str]:
     """The earthquake under a key of another language, its time, or its number."""
     if match := _ID.match(line):
         return {"event": f"{match[1].upper()} {match[2]}"}
-    key, mark, value = line.partition(":")
-    if not mark or not speaks_of(key, EARTHQUAKES) or not value.strip():
+    match = _KEYED.match(line)
+    if not match or not speaks_of(match[1], EARTHQUAKES):
         return {}
+    value = match[2].strip()[:80]
     if seconds_of(value) is not None:
-        return {"origin": value.strip()[:80]}
-    plain = re.fullmatch(r"[^\W\d_].*", value.strip())
-    return {"event": value.strip()[:80]} if plain else {}
+        return {"origin": value}
+    numbered = "id" in folded(match[1])
+    named = numbered or re.fullmatch(r"[^\W\d_].*", value)
+    return {"event": value} if named else {}
+
+
+def _origin_among(lines: Iterable[str]) -> dict[str, str]:
+    """The time of the earthquake under a key of any language, perhaps in two lines."""
+    date = ""
+    clock = ""
+    for line in lines:
+        for part in line.split("|"):
+            match = _KEYED.match(part)
+            if match is None or speaks_of(match[1], OF_THE_FILE):
+                continue
+            value = match[2].strip()[:80]
+            value += " local" * ("local" in folded(match[1]))
+            of_it = speaks_of(match[1], ORIGINS)
+            timed = seconds_of(value) is not None
+            about = of_it or speaks_of(match[1], TIMES | DATES)
+            if about and (timed or days_of(value)):
+                if of_it or timed:
+                    return {"origin": value}
+                date = date or value
+            elif speaks_of(match[1], TIMES | ORIGINS) and has_clock(value):
+                clock = clock or value
+    return {"origin": f"{date} {clock}"} if date and clock else {}
 
 
 _DIP = re.compile(
@@ -128,20 +173,37 @@ _STRUCTURE = re.compile(
 _OF_AN_EARTHQUAKE = re.compile(r"hypo|focal|event|source|epi")
 _OF_THE_EARTHQUAKE = re.compile(
     r"hypo|ipoc|focal|foco|focus|event|source|epi|earthquake|deprem|sismo|\bkm\b|hodnot"
-    r"|bedrock|rock depth|filter|vs\d|velocity|model|soil|layer"
+    r"|bedrock|basement rock|rock depth|filter|vs\d|velocity|model|soil|layer"
 )
 
 
 def place_of(line: str) -> str:
     """Where a line puts the instrument: in a borehole, in a building; else nothing."""
     plain = folded(line)
-    if _BELOW.search(plain) or _BELOW.search(line):
+    match = re.match(r"^\W*([^:=]{2,40}?)\s*[:=]\s*(.*\S)", plain)
+    station = match is not None and speaks_of(match[1], _NAMES)
+    if station:
+        plain = f": {plain.split()[-1]}"  # a name says it at its end: Roof Butte, AZ
+    if _BELOW.search(plain) or (not station and _BELOW.search(line)):
         return "" if _OF_AN_EARTHQUAKE.search(plain) else "borehole"
-    if _OF_THE_EARTHQUAKE.search(plain):
+    if _OF_THE_EARTHQUAKE.search(plain) or says_free_field(plain):
         return ""
     if _DEPTH.search(plain):
         return "borehole"
-    return "in a building" if _STRUCTURE.search(plain) else ""
+    inside = _STRUCTURE.search(plain) or (
+        not station and match and _is_inside(*match.groups())
+    )
+    return "in a building" if inside else ""
+
+
+def _is_inside(key: str, value: str) -> bool:
+    """True of a key of places whose value is one in a structure, or a height above ground."""
+    if not speaks_of(key, PLACES | STRUCTURES):
+        return False
+    height = re.search(r"height|above ground|elevation above", key) is not None
+    return says_structure(value) or (
+        height and bool(re.match(r"0*[1-9][\d.]* ?m\b", value))
+    )
 
 
 def upright_word(line: str) -> str:
