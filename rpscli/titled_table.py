@@ -53,6 +53,9 @@ class TitledTable:
     titles: tuple[Title, ...]
     rows: tuple[Row, ...]
     written: str = ""  # the line of titles, cut
+    remarks: tuple[
+        tuple[int, str], ...
+    ] = ()  # lines that begin with #, and their numbers
 
     @property
     def names(self) -> list[str]:
@@ -61,9 +64,13 @@ class TitledTable:
 
 
 def text_of(data: bytes) -> str:
-    """The text of a table: UTF-8, or UTF-16 where it begins with its mark."""
-    wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
-    return data.decode("utf-16" if wide else "utf-8-sig")
+    """The text of a table: UTF-8, UTF-16 where it begins with its mark, else Latin-1."""
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return data.decode("utf-16")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:  # as spreadsheets write it in Western Europe
+        return data.decode("latin-1")
 
 
 def number_of(cell: str) -> float:
@@ -90,9 +97,19 @@ def titled_table(
     filled = (
         Row(line, cells + [""] * (len(titles) - len(cells))) for line, cells in rest
     )
+    told = [
+        (number, line.strip('" #'))
+        for number, line in enumerate(text.removeprefix("\ufeff").splitlines(), 1)
+        if remarks and _is_remark(line)
+    ]
+    written = beginning(",".join(first.cells))
     return TitledTable(
-        f"{source}", first.line, titles, tuple(filled), beginning(",".join(first.cells))
+        f"{source}", first.line, titles, tuple(filled), written, tuple(told)
     )
+
+
+def _is_remark(line: str) -> bool:
+    return line.lstrip('" ').startswith("#")
 
 
 def _rows(
@@ -105,10 +122,7 @@ def _rows(
     if lines and (match := _SEPARATOR.fullmatch(lines[0].strip())):
         separator = match[1]
         skipped = 1
-    body = [
-        "" if remarks and line.lstrip('" ').startswith("#") else line
-        for line in lines[skipped:]
-    ]
+    body = ["" if remarks and _is_remark(line) else line for line in lines[skipped:]]
     head = next((line for line in body if line.strip()), "")
     separator = separator or _separator_of(head)
     reader = csv.reader(

@@ -75,7 +75,9 @@ def named(key: Key) -> str:
 
 
 def own_numbers(certified: Mapping[Key, Sequence[float]]) -> Iterator[tuple[str, float]]:
-    """Names and numbers of all rows that need no test: answers given, and known systems."""
+    """Names and numbers of all rows that need no test: answers given, and known
+    systems.
+    """
     yield from ((named(key), values[-1]) for key, values in certified.items() if values)
     for numbers in NUMBERS:
         yield from numbers()

@@ -32,7 +32,9 @@ NOT_SHOWN = "not-shown"
 """Word of `--fail-on`: limits which are met and not shown to be kept count too."""
 
 FOR_A_MEAN = 7
-"""Recordings from which on a mean of maxima is judged, by EN 1998-1; of fewer the largest."""
+"""Recordings from which on a mean of maxima is judged, by EN 1998-1; of fewer the
+largest.
+"""
 
 LIMITS = {quantity.name: quantity for quantity in LIMITED}
 """Results that conditions may limit, in SI units."""

@@ -71,7 +71,9 @@ WALKS = 0.25
 its columns (Theory, 2)."""
 
 LEAST_STRENGTH = 1e5
-"""Of material under an end [Pa], a tenth of any mortar: a smaller number has lost its MPa."""
+"""Of material under an end [Pa], a tenth of any mortar: a smaller number has lost its
+MPa.
+"""
 
 NEIGHBOURS = 20.0
 """No storey is so many times as heavy, or as stiff, as the next one."""

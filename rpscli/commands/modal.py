@@ -69,7 +69,9 @@ NEVER_LIFTS = (
     " ends without a flat part are never in full contact."
 )
 SAME = 0.01
-"""Of a frequency and a damping ratio: vertical modes that change less are told in a line."""
+"""Of a frequency and a damping ratio: vertical modes that change less are told in a
+line.
+"""
 
 FIRST_ORDER = "first order"
 """Head of the paper's values: small alpha, rocking continued to 0."""

@@ -26,7 +26,9 @@ MAIN = (
 )
 """Results that stand beside those with limits, as far as there is room."""
 SAME = {"rotation_ratio": "max_rotation", "friction_demand": "friction_ratio"}
-"""Results that differ from others by a constant factor, beside which they do not stand."""
+"""Results that differ from others by a constant factor, beside which they do
+not stand.
+"""
 COLUMNS = 8
 """Results side by side, which fit paper."""
 

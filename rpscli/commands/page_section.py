@@ -48,7 +48,9 @@ PAGE_SECTIONS: dict[str, PageSection] = all_of_tools("page_sections")
 
 
 def section_options(function: Command) -> Command:
-    """An option for each section; values of those that are asked for by name, as `extra`."""
+    """An option for each section; values of those that are asked for by name, as
+    `extra`.
+    """
 
     @wraps(function)
     def command(**given: Any) -> None:

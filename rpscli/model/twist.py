@@ -1,4 +1,6 @@
-"""How a slab on rows of columns turns about the vertical: what seeds it, what resists it."""
+"""How a slab on rows of columns turns about the vertical: what seeds it, what resists
+it.
+"""
 
 from __future__ import annotations
 

@@ -105,7 +105,9 @@ def first_descent(b: Quintic, piece: NDArray[np.float64]) -> float:
 
 @compiled
 def search_descent(b: Quintic, piece: NDArray[np.float64]) -> float:
-    """First descent of a quintic whose hull does not say that there is none [piece (6,)]."""
+    """First descent of a quintic whose hull does not say that there is none [piece
+    (6,)].
+    """
     level = 0
     index = 0
     while True:

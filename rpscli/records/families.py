@@ -221,9 +221,10 @@ def require_horizontal_titles(sources: Iterable[Source], folder: Path | None) ->
         unknown = [t for t, way in zip(titles, known, strict=True) if way is None]
         upright = any(way is not None and way.vertical for way in known)
         if unknown and not (upright and len(own) == _MANY):
+            first = ",".join(str(of.values["channel"]) for of in own[:2])
             raise RecordError(
                 f"{place}: has {len(own)} columns of acceleration, and the titles"
                 f" {', '.join(unknown[:3])} do not tell their directions; name the"
-                f" horizontal"
-                f" ones: ?channel={own[0].values['channel']}, or two by ?channel=1,2&both"
+                f" horizontal ones: ?channel={own[0].values['channel']}, or two by"
+                f" ?channel={first}&both"
             )

@@ -55,7 +55,9 @@ class Recording(NamedTuple):
         return _BOREHOLE.search(self.station) is not None
 
 
-_BOREHOLE = re.compile(r"bore-?hole|down-?hole|\bdepth\b|\bin a building$", re.IGNORECASE)
+_BOREHOLE = re.compile(
+    r"(?:bore-?hole|down-?hole)[\W\d]*m?$|\bdepth\b|\bin a building$", re.IGNORECASE
+)
 
 UNKNOWN = Recording()
 

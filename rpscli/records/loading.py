@@ -328,7 +328,9 @@ def _files(of: Source, folder: Path | None, notes: list[str]) -> list[Source]:
 def _once(
     of: Source, single: list[Source], folder: Path | None, notes: list[str]
 ) -> list[Source]:
-    """Sources without those that are another one by a further name, with notes on these."""
+    """Sources without those that are another one by a further name, with notes on
+    these.
+    """
     motions = {}
     for each in single:
         with suppress(RecordError):  # told where it is read
@@ -373,7 +375,9 @@ _BELOW_BY_NAME = re.compile(
 def _above_ground(
     of: Source, single: list[Source], folder: Path | None, notes: list[str]
 ) -> list[Source]:
-    """Sources without those in boreholes, with a note on these; all if there are no others."""
+    """Sources without those in boreholes, with a note on these; all if there are no
+    others.
+    """
     below = [
         each
         for each in single

@@ -1,4 +1,6 @@
-"""Motions that are there twice, as a file and its conversion, or a copy by another name."""
+"""Motions that are there twice, as a file and its conversion, or a copy by another
+name.
+"""
 
 from __future__ import annotations
 

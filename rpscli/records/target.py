@@ -8,11 +8,10 @@ was at hand: `checked` of each says what its formulae were compared with.
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal, NamedTuple, cast, get_args
+from typing import Literal, cast, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,22 +21,13 @@ from rpscli.errors import (
     LARGEST,
     PluginError,
     RecordError,
-    beginning,
     stem_of,
     told,
 )
 from rpscli.records.measures import Of
-from rpscli.records.quantities import (
-    ACCELERATIONS,
-    HERTZ_PATTERN,
-    KNOWN_UNITS,
-    TIME_UNITS,
-    canonical_unit,
-)
 from rpscli.records.source import Query, hint, parse_query
-from rpscli.records.words import folded, look_alikes
+from rpscli.records.target_table import read_ordinates
 from rpscli.registry import Registry, owner_of
-from rpscli.titled_table import Row, TitledTable, number_of, text_of, titled_table
 
 Array = NDArray[np.float64]
 Shape = Callable[[Array], Array]  # periods (n,) [s] to pseudo-accelerations (n,) [m/s2]
@@ -403,7 +393,7 @@ def _table(path: Path, options: str, source: str) -> TargetSpectrum:
     and perhaps `sigma_ln [-]`.
     """
     # With the third one, the standard deviation of ln Sa, the acceleration is the median.
-    table = _read_ordinates(path, source)
+    table = read_ordinates(path, source)
     cells = table.cells
     known = np.log(cells[:, :2])
 
@@ -433,121 +423,3 @@ def _table(path: Path, options: str, source: str) -> TargetSpectrum:
         pga=table.pga,
         pinned=float(cells[np.argmin(cells[:, 2]), 0]) if pinned else None,
     )
-
-
-class _Ordinates(NamedTuple):
-    """Rows of a file: growing periods > 0 [s], accelerations in units of `factor`
-    [m/s2], and sigma_ln if it `scatters`. The `pga` [m/s2] is that at the period 0, the
-    `note` names columns that are not used.
-    """
-
-    cells: Array
-    factor: float
-    scatters: bool
-    pga: float | None
-    note: str
-
-
-def _read_ordinates(path: Path, source: str) -> _Ordinates:
-    """Read and check the rows of a CSV file."""
-    table = _columns_of(path, source)
-    factor = ACCELERATIONS[canonical_unit(table.titles[1].unit) or "m/s2"]
-    scatters = _place_of_deviation(table)
-    width = 3 if scatters else 2
-    places = (0, 1, scatters)[:width]
-    cells = np.array([_cells(row, places, path) for row in table.rows]).reshape(-1, width)
-    cells = _over_periods(cells, table.titles[0].unit)
-    unused = [n for place, n in enumerate(table.names) if place not in places]
-    rigid = cells[cells[:, 0] == 0.0]  # 0 has no logarithm
-    cells = cells[cells[:, 0] > 0.0]
-    if len(cells) < 2 or (np.diff(cells[:, 0]) <= 0.0).any():
-        raise RecordError(f"{path}: needs two rows at least, with periods that grow")
-    pga = factor * float(rigid[0, 1]) if len(rigid) else None
-    note = f"columns not used: {', '.join(unused)}" if unused else ""
-    return _Ordinates(cells, factor, bool(scatters), pga, note)
-
-
-def _over_periods(cells: Array, unit: str) -> Array:
-    """Rows over periods [s], of rows over periods in a unit of time or over frequencies."""
-    if not re.fullmatch(HERTZ_PATTERN, folded(unit)):
-        return cells * [TIME_UNITS[folded(unit)], *[1.0] * (cells.shape[1] - 1)]
-    cells = cells[cells[:, 0] > 0.0][::-1]  # at the frequency 0 the period has no bound
-    return np.column_stack([1.0 / cells[:, 0], cells[:, 1:]])
-
-
-def _is_of_periods(unit: str) -> bool:
-    """True of a unit of periods or of frequencies."""
-    return bool(unit) and (
-        folded(unit) in TIME_UNITS
-        or re.fullmatch(HERTZ_PATTERN, folded(unit)) is not None
-    )
-
-
-_DEVIATION = re.compile(
-    r"(?:sigma|beta|std|dispersion|σ|β)(?:ln)?(?:sa)?|(?:sigma|beta|std|stdev|sd"
-    r"|σ)?lnsa(?:std|sd)?"
-    r"|(?:stdev|sd|standarddeviation|σ)(?:of)?ln(?:sa)?|ln(?:std|sd|stdev|sigma)"
-)
-"""Names of the standard deviation of ln Sa, a plain number, without what parts words."""
-_SCATTERS = re.compile(
-    r"sigma|σ|\bstd|stdev|\bsd\b|standard|deviat|desv|sapma|streu|ecart|scarto|\bcov\b"
-    r"|scatter"
-    r"|dispers|variance|отклон|偏差|ばらつき|标准差|odchyl|τυπικη"
-)
-"""Words for some scatter, of which the measure is not told."""
-
-
-def _place_of_deviation(table: TitledTable) -> int:
-    """The column of the standard deviation of ln Sa; 0 without one."""
-    for place, title in enumerate(table.titles[2:], 2):
-        name = re.sub(r"[\W_]+", "", folded(title.name))
-        if title.unit.lower() in ("", "ln") and _DEVIATION.fullmatch(name + title.unit):
-            return place
-    for title in table.titles[2:]:
-        if _SCATTERS.search(folded(title.name)):
-            raise RecordError(
-                f"{table.source}:{table.line}: the column {title.name!r} may be the"
-                f" scatter of"
-                " the spectrum; call it sigma_ln [-] if it is the standard deviation of"
-                " ln Sa, else remove it"
-            )
-    return 0
-
-
-def _columns_of(path: Path, source: str) -> TitledTable:
-    """The columns of a target, each understood by its title."""
-    try:
-        text = text_of(path.read_bytes())
-    except (OSError, UnicodeDecodeError) as error:
-        raise RecordError(f"{source}: cannot be read: {error}; name a CSV file") from None
-    table = titled_table(text, path, RecordError)
-    titles = table.titles
-    known = len(titles) > 1 and canonical_unit(titles[1].unit) is not None
-    if not (known and _is_of_periods(titles[0].unit)):
-        odd = [
-            f"{title.name} [{title.unit}]{look_alikes(f'{title.name} {title.unit}')}"
-            for place, title in enumerate(titles[:2])
-            if not (
-                canonical_unit(title.unit or "-") if place else _is_of_periods(title.unit)
-            )
-        ]
-        raise RecordError(
-            f"{path}:{table.line}: {table.written} should name two columns with units,"
-            " as in 'period [s],acceleration [g]' (or [ms], or a frequency in [Hz]);"
-            f" accelerations are in {KNOWN_UNITS}"
-            f" (not understood: {', '.join(odd) or 'one title only'})"
-        )
-    return table
-
-
-def _cells(row: Row, places: Sequence[int], path: Path) -> list[float]:
-    found = [number_of(row.cells[place]) for place in places]
-    width = len(places)
-    wrong = not np.isfinite(found).all()
-    if wrong or not (min(found) >= 0.0 and found[1] > 0.0):
-        also = ", and a sigma_ln >= 0" if width > 2 else ""
-        raise RecordError(
-            f"{path}:{row.line}: {beginning(','.join(row.cells[:width]))} must be a"
-            f" period >= 0 and an acceleration > 0{also}"
-        )
-    return found

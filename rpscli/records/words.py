@@ -1,7 +1,7 @@
 """Words of headers, titles and names of files, compared without accents and case.
 
-The one vocabulary of what a key of a header is about. Stems of four letters and more, and
-words of other scripts, are also found at the beginning of longer words.
+The one vocabulary of what a key of a header is about. Stems of four letters and more are
+also found at the beginning of longer words, and those of other scripts anywhere in them.
 """
 
 from __future__ import annotations
@@ -39,8 +39,9 @@ def speaks_of(text: str, vocabulary: Collection[str]) -> bool:
 def _begins(word: str, vocabulary: Collection[str]) -> bool:
     if word in vocabulary:
         return True
-    shortest = 4 if word.isascii() else 2
-    return any(word[:n] in vocabulary for n in range(shortest, len(word)))
+    if not word.isascii():
+        return any(len(stem) > 1 and stem in word for stem in vocabulary)
+    return any(word[:n] in vocabulary for n in range(4, len(word)))
 
 
 def look_alikes(text: str) -> str:
@@ -57,11 +58,12 @@ def look_alikes(text: str) -> str:
     return foreign_letters(odd)
 
 
-def _vocabulary(text: str) -> frozenset[str]:
+def vocabulary(text: str) -> frozenset[str]:
+    """Words between blanks, folded."""
     return frozenset(map(folded, text.split()))
 
 
-FACTORS = _vocabulary(
+FACTORS = vocabulary(
     "factor factors faktor facteur fattore fator coefficient coeff coefficiente"
     " koeffizient"
     " katsayi katsayisi carpan scale scaling scalefactor echelle escala scala massstab"
@@ -75,12 +77,12 @@ FACTORS = _vocabulary(
 )
 """What is said of a factor on the values."""
 
-TIMES = _vocabulary(
+TIMES = vocabulary(
     "at bei time times hora heure ora uhr uhrzeit saat jam время 時刻 时刻 时间 utc gmt jst"
     " temps"
     " tiempo tempo zaman zeit"
 )
-NOT_OF_THE_MOTION = _vocabulary(
+NOT_OF_THE_MOTION = vocabulary(
     "lat latitude latitud latitudine breite breitengrad enlem широта 緯度 纬度 szerokosc"
     " lon long lng longitude longitud longitudine lange langengrad boylam долгота 経度 经度"
     " coord coordinates koordin easting northing utm"
@@ -117,7 +119,7 @@ NOT_OF_THE_MOTION = _vocabulary(
 """What is said of the earthquake, the station, the instrument, the file."""
 NOT_OF_THE_MOTION |= TIMES
 
-PEAKS = _vocabulary(
+PEAKS = vocabulary(
     "pga pha pgah pgav peak amax max maximum maximal maximale maxima maximo massimo"
     " massima"
     " maksimum maksimal maxi picco pico pic spitze spitzen spitzenwert"
@@ -126,35 +128,35 @@ PEAKS = _vocabulary(
 )
 """What is said of a largest value."""
 
-LIMITS = _vocabulary(
+LIMITS = vocabulary(
     "full fullscale fs range clip clipping saturation messbereich rango trigger"
     " threshold umbral soglia tetik max_range"
 )
 """What is said of the range of an instrument, in units of acceleration."""
 
-SAMPLING = _vocabulary(
+SAMPLING = vocabulary(
     "sampl sampling samplerate abtast campion muestre muestra echantill orneklem дискрет"
     " опрос 采样 取样 採樣 取樣 サンプリング サンフリンク δειγματ amostra caiyang vzork probkow"
     " sps fs"
 )
-STEPS = _vocabulary(
+STEPS = vocabulary(
     "dt delta step timestep paso pas passo adim adimi adimlari schritt zeitschritt"
     " schrittweite интервал шаг 間隔 间隔 刻み krok korak intervalo intervalle intervall"
     " intervallo aralig araligi interval bu buchang kankaku"
 )
 """What is said of the time between samples."""
 
-COUNTED = _vocabulary(
+COUNTED = vocabulary(
     "npts ndata points point samples data datos dati daten werte values valores valori"
     " veri nokta deger degerler punti puntos punkte echantillons donnees valeurs точек"
     " отсчет отсчетов данных 点数 点 データ数 テータ 数据 anzahl pontos dados probek"
 )
 """What is counted: with a number of them, that of the values."""
-SERIALS = _vocabulary(
+SERIALS = vocabulary(
     "format version type page set file base bank center centre id serial"
 )
 
-DIRECTIONS = _vocabulary(
+DIRECTIONS = vocabulary(
     "component comp componente composante komponente komponent bilesen bileseni"
     " компонента компонент kanal channel chan canal canale direction direccion direzione"
     " direcao dir richtung yon yonu направление sens sentido sensor_orientation"
@@ -165,14 +167,14 @@ DIRECTIONS = _vocabulary(
 )
 """What is said of the direction of a component."""
 
-EARTHQUAKES = _vocabulary(
+EARTHQUAKES = vocabulary(
     "event evento evenement ereignis olay earthquake eq deprem depremi terremoto sismo"
     " erdbeben"
     " seisme землетрясение 地震 jishin dizhen σεισμος trzesienie zemetreseni"
 )
 """What is said of the earthquake."""
 
-PLACES = _vocabulary(
+PLACES = vocabulary(
     "location loc position installation sensor instrument structure placement mounted"
     " mounting lage standort aufstellung ubicacion ubicazione emplacement posizione"
     " posicion"
@@ -181,7 +183,7 @@ PLACES = _vocabulary(
 )
 """What is said of where an instrument stands."""
 
-STRUCTURES = _vocabulary(
+STRUCTURES = vocabulary(
     "roof rooftop basement cellar attic mezzanine penthouse terrace storey story floor"
     " building bridge deck pier pylon abutment midspan girder dam crest spillway tower"
     " chimney tunnel slab column beam foundation pile underground"
@@ -244,13 +246,13 @@ def stands_in_a_structure(name: str) -> bool:
     return inside or re.search(rf"(?<=[^a-z0-9]){STOREYS.pattern}", plain) is not None
 
 
-ORIGINS = EARTHQUAKES | _vocabulary(
+ORIGINS = EARTHQUAKES | vocabulary(
     "origin origine origen origem ot herd herdzeit ursprung ursprungszeit очаге очага"
     " 発震 発震時 発生 发震 olus olusum olusumu"
 )
 """What is said of the time of the earthquake."""
-DATES = _vocabulary("date datum fecha data tarih tarihi дата 日付 日期 dato jour")
-OF_THE_FILE = _vocabulary(
+DATES = vocabulary("date datum fecha data tarih tarihi дата 日付 日期 dato jour")
+OF_THE_FILE = vocabulary(
     "start begin beginning first trigger triggered record recorded recording registro"
     " process processed processing created creation printed converted exported export"
     " file last end stop sample accessed download downloaded modified version release"
@@ -259,12 +261,12 @@ OF_THE_FILE = _vocabulary(
 )
 """What is said of times that are not those of the earthquake."""
 
-COUNTRIES = _vocabulary(
+COUNTRIES = vocabulary(
     "turkey turkiye taiwan japan italy italia iran chile mexico greece zealand nepal"
     " usa ca"
     " california calif nevada alaska armenia china peru india romania croatia ecuador"
 )
-NO_NAMES = _vocabulary(
+NO_NAMES = vocabulary(
     "earthquake eq event of record the sequence mainshock aftershock deprem depremi sismo"
     " terremoto erdbeben seisme near off coast north south east west central new utc"
     " gmt jst"
@@ -274,33 +276,34 @@ NO_NAMES = _vocabulary(
 )
 """Words beside the name of an earthquake."""
 
-OTHER_QUANTITIES = _vocabulary(
+OTHER_QUANTITIES = vocabulary(
     "velocity velocities vel velocidad velocita velocidade vitesse geschwindigkeit hiz"
     " скорость sebesseg predkosc rychlost snelheid ταχυτητα 速度 sokudo sudu kine"
     " displacement displacements disp displ deplacement verschiebung desplazamiento"
     " spostamento deslocamento yerdegistirme degistirme перемещение смещение"
     " przemieszczenie"
     " 変位 变位 位移 jerk strain dehnung deformacion counts cuentas coups zahlimpulse"
-    " digits volt volts"
+    " digits volt volts mv"
 )
 """Quantities that are no acceleration, and readings of instruments."""
-BESIDE_QUANTITIES = _vocabulary(
+BESIDE_QUANTITIES = vocabulary(
     "type data signal quantity quantite grandezza magnitud kind channel of the du de der"
-    " in unit units unidad unidades einheit birim unita единица единицы soil sol suelo"
+    " yer in unit units unidad unidades einheit birim unita единица единицы soil sol"
+    " suelo"
     " ground boden zemin kaydi kayit record recording zapis запись s sec с сек"
 )
 """Words beside them that say nothing else."""
 
-NO_SERIES = _vocabulary(
-    "spectrum spectra spectral spektr spektral spektrum spectre spettro espectro fourier"
-    " fas psa psv uhs arias"
-    " husid спектр スペクトル 谱 譜 transfer autocorrelation correlation"
-    " eigenvalue eigenvalues cyclic protocol pushover hysteresis wavelet coefficients"
-    " gmpe envelope"
+NO_SERIES = vocabulary(
+    "spectrum spectra spectral spektr spektral spektrum spectre spettro spettri espectro"
+    " fourier psd fas psa psv uhs arias husid hazard widmo φασμα спектр スペクトル 応答譜"
+    " 反应谱"
+    " 谱 譜 transfer autocorrelation correlation eigenvalue eigenvalues cyclic protocol"
+    " pushover hysteresis wavelet coefficients gmpe envelope"
 )
 """Tables of other things than a motion over time."""
 
-UNITS = _vocabulary(
+UNITS = vocabulary(
     "unit units unidad unidades unita unite unites einheit einheiten birim birimi единица"
     " единицы ед 単位 单位 unidade jednotka jednostka mertekegyseg eenheid enhet danwei tani"
     " μοναδα μοναδες"

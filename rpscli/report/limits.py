@@ -183,7 +183,9 @@ def excess_text(verdict: Verdict) -> str:
 
 
 def verdicts_in_short(verdicts: Sequence[Verdict], of: str = "") -> str:
-    """Numbers of limits of something that are exceeded, met, or met without being shown."""
+    """Numbers of limits of something that are exceeded, met, or met without being
+    shown.
+    """
     if not verdicts:
         return "No limits were set."
     what = f"{len(verdicts)} limits{of}"

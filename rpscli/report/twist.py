@@ -95,7 +95,9 @@ def columns_table(twist: TwistResult) -> Table:
 
 
 def twist_document(twist: TwistResult | None) -> dict[str, Any] | None:
-    """Energies, columns and what was taken, SI units; None where the slab does not turn."""
+    """Energies, columns and what was taken, SI units; None where the slab does not
+    turn.
+    """
     if twist is None:
         return None
     columns = {name: values.tolist() for name, _, values in twist.by_column()}

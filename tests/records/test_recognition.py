@@ -108,7 +108,7 @@ def test_steps_in_other_forms(step, tmp_path):
     assert read(tmp_path, series(step, "units: g")).dt == pytest.approx(0.005, rel=1e-12)
 
 
-@pytest.mark.parametrize("step", ["dt: 5 samples", "dt: 5", "dt: 0.1 min", "dt: 5 us x"])
+@pytest.mark.parametrize("step", ["dt: 5 samples", "dt: 5", "dt: 0.1 min", "dt: 5 ns x"])
 def test_steps_that_are_not_understood(step, tmp_path):
     with pytest.raises(RecordError, match=r"time|step"):
         read(tmp_path, series(step, "units: g"))

@@ -177,7 +177,9 @@ class SuperstructureSection(Section):
     """another stiffness in the second horizontal direction; left out:
     the same as in the first"""
     torsion: TorsionSection | None = None
-    """how storeys twist, with podium.twist; left out: a period ratio of 1.2, concentric"""
+    """how storeys twist, with podium.twist; left out: a period ratio of 1.2,
+    concentric
+    """
 
 
 class DimensionsSection(Section):

@@ -124,7 +124,9 @@ def take_step(
 
 @compiled
 def error_of(s: Record) -> float:
-    """Difference of the rules of order 6 and 5 in the slab's rates, over what it may be."""
+    """Difference of the rules of order 6 and 5 in the slab's rates, over what it may
+    be.
+    """
     missed = 0.0
     speed = 0.0
     for axis in range(3):

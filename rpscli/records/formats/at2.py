@@ -239,7 +239,9 @@ _TITLE_WIDTH = 240
 
 
 def _recording_line(of: Recording) -> list[str]:
-    """The line `event, date, station, direction` of a recording; none if all is unknown."""
+    """The line `event, date, station, direction` of a recording; none if all is
+    unknown.
+    """
     event, _, date = of.event.rpartition(",")
     if not event:
         event, date = date, ""

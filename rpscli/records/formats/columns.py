@@ -12,13 +12,14 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from typing import NamedTuple, NoReturn
+from typing import NamedTuple
 
 import numpy as np
 
 from rpscli.errors import RecordError
 from rpscli.records.directions import direction_in
 from rpscli.records.formats.header_lines import Facts, HeaderLines, doubts_of_header
+from rpscli.records.formats.no_motions import refuse_other_quantities, refuse_other_steps
 from rpscli.records.formats.record_text import (
     Array,
     Channel,
@@ -62,17 +63,18 @@ from rpscli.records.quantities import (
     numbers_in,
     numerals_in,
 )
-from rpscli.records.words import folded, look_alikes
 
 _STEP = (
     r"(?<![?&])\b(?:dt|delta[\s_]*t?|Δt|(?:time|sampling)[\s_]*(?:step|interval|period)"
     rf"|equally spaced (?:at|intervals of)){STEP_PATTERN}"
 )
+_PER_SECOND = r"(?:samples?|scans?|points?)\s*(?:/|per)\s*s"
 _RATE = (
     r"(?<![?&])\b(?:sampl\w*[\s_]*(?:rate|freq\w*)|fs|sps)\b\s*(?:[(\[]\s*(?:hz"
     r"|sps)\s*[)\]])?"
-    rf"\s*[=:]?\s*({NUMBER_PATTERN})\s*(?:hz|sps|1/s|samples?\s*/\s*s\w*)?(?![A-Za-z])"
-    rf"|(?<![\w.])({NUMBER_PATTERN})\s*(?:sps\b|samples?\s*(?:/|per)\s*s\w*)"
+    rf"\s*[=:]?\s*({NUMBER_PATTERN})\s*(k?hz|sps|1/s|samples?\s*/\s*s\w*)?(?![A-Za-z\d])"
+    rf"|(?<![\w.])({NUMBER_PATTERN})\s*(?:sps\b|{_PER_SECOND}\w*)"
+    rf"|\b{_PER_SECOND}(?:ec\w*)?\s*[=:]\s*({NUMBER_PATTERN})"
 )
 _UNITS_KEY = (
     r"(?<![?&])\b\w*?units?\b\s*(?:[=:]|(?:of|in|are|is)\b)"
@@ -103,7 +105,7 @@ def read_columns(text: RecordText) -> GroundMotion:
             ColumnTitle("time" if i == 0 else f"acc {i + 1}", "", line)
             for i in range(width)
         ]
-    _refuse_other_quantities(text, table, titles)
+    refuse_other_quantities(text, table, titles)
     if even and width > 1 and (width == 2 or titles):
         return _columns(text, table, titles)
     text.single_channel()
@@ -140,7 +142,7 @@ def contents_of_columns(text: RecordText) -> list[Channel]:
     recording = recording_of(line.value for line in table.header)
     titles = [] if np.any(table.widths != width) else _titles(text, table, width)
     try:
-        _refuse_other_quantities(text, table, titles)
+        refuse_other_quantities(text, table, titles)
     except RecordError as error:
         return [Channel(refusal=f"{error}".partition(": ")[2])]
     held = [(i, titles[i]) for i in _accelerations(titles)]
@@ -372,7 +374,8 @@ def _accelerations(titles: list[ColumnTitle]) -> list[int]:
         if title.kind == UNKNOWN and (not title.unit or canonical_unit(title.unit))
     ]
     named = all(re.fullmatch(r"[^\W\d][\w .°+-]*", titles[i].name) for i in unknown)
-    several = named and (len(known) > 1 or (known and len(unknown) > 1))
+    like = len(unknown) > 1 or any(titles[i].unit for i in unknown)
+    several = named and (len(known) > 1 or (known and like))
     return sorted([*known, *unknown]) if several else known
 
 
@@ -470,9 +473,12 @@ def _stated(text: RecordText, table: Table, title: ColumnTitle | None) -> Stated
     text.refuse_multiples(lines, _UNITS_KEY)
     steps = text.understood_steps(statements("dt", _STEP, lines)) + unread.steps()
     steps += [
-        each._replace(value=f"{1.0 / text.number(each, positive=True):.15g}")
+        each._replace(value=f"{_step_of_rate(text, each):.15g}")
         for each in statements("the sampling rate", _RATE, lines)
     ]
+    if text.dt is None:
+        refuse_other_steps(text, steps, lines)
+    steps = steps if text.dt is None or not text.dt_counts else []
     peak = next(iter(statements("peak", PEAK_PATTERN, lines)), None)
     if title and title.unit and (canonical_unit(title.unit) or not title.remarks):
         units.append(Statement(f"the title {title.name}", title.unit, title.line))
@@ -484,84 +490,8 @@ def _stated(text: RecordText, table: Table, title: ColumnTitle | None) -> Stated
     )
 
 
-COLUMNS = "?columns=time,acceleration [g]"
-"""What says all of two columns."""
-
-
-def _refuse_other_quantities(
-    text: RecordText, table: Table, titles: list[ColumnTitle]
-) -> None:
-    """Refuse columns of other quantities, and titles that are not understood."""
-    kinds = [title.kind for title in titles]
-    for title, kind in zip(titles, kinds, strict=True):
-        if kind == "a spectrum":
-            raise text.fault(
-                f"the title {title.name[:40]!r} is that of a spectrum, not of a record"
-                " over time; give the acceleration record of the same station",
-                title.line,
-            )
-    if text.columns is None:
-        _refuse_spectra(text, table)
-    if ACCELERATION not in kinds:
-        _refuse_other_series(text, table)
-    if titles and (ACCELERATION not in kinds or _lacks_time(titles, kinds)):
-        _refuse_titles(text, titles, kinds)
-
-
-_SPECTRUM = re.compile(
-    r"spectr(?:um|a)\b|spettr[oi]\b|spektr\w*|espectro|спектр\w*|φασμα|widmo|スペクトル|反应谱|谱"
-    r"|応答譜|hazard|fourier|\bpsd\b"
-)
-_MATCHED = re.compile(r"compat|match|target|uyumlu|angepasst|natural|filter|corner")
-
-
-def _refuse_spectra(text: RecordText, table: Table) -> None:
-    """Refuse a table under a line that calls it a spectrum, in several languages."""
-    for line in table.header:
-        plain = folded(line.value)
-        if _SPECTRUM.search(plain) and not _MATCHED.search(plain):
-            raise text.fault(
-                f"the header says {line.value[:60]!r}: this is a spectrum or a curve,"
-                f" not a"
-                " record over time; if it is one, say what the columns are:"
-                f" ?columns={'time,' if table.widths[0] > 1 else ''}acceleration [UNIT]",
-                line.line,
-            )
-
-
-def _refuse_other_series(text: RecordText, table: Table) -> None:
-    """Refuse velocities and displacements by a title anywhere in the header."""
-    for line in table.header:
-        for cell in re.split(r"[,;\t]|\s{2,}", line.value):
-            title = title_of(plain_line(cell), line.line)
-            is_title = title.name and not re.search(r"[\d:=]", cell)
-            if is_title and title.kind in ("velocity", "displacement"):
-                raise text.fault(
-                    f"the header says {line.value[:60]!r}: this is a {title.kind} record;"
-                    " give the acceleration record of the same station",
-                    line.line,
-                )
-
-
-def _lacks_time(titles: list[ColumnTitle], kinds: list[str]) -> bool:
-    """True of two columns of which one is no acceleration, no time and no count."""
-    return len(titles) == 2 and not {*kinds} <= {TIME, ACCELERATION, COUNT}
-
-
-def _refuse_titles(
-    text: RecordText, titles: list[ColumnTitle], kinds: list[str]
-) -> NoReturn:
-    """Say what was understood of titles, what not, and what to write."""
-    said = [
-        f"{title.name[:30] or title.unit!r} is {kind or 'not understood'}"
-        + ("" if kind else look_alikes(title.name))
-        for title, kind in zip(titles, kinds, strict=True)
-    ]
-    units = [title.unit for title in titles if canonical_unit(title.unit or "-")]
-    unit = units[0] if units else "g"
-    wanted = ",".join(["time", f"acceleration [{unit}]", *["-"] * (len(titles) - 2)])
-    raise text.fault(
-        f"the titles are not those of a record over time: {'; '.join(said[:4])}; if it is"
-        f" one, say what the columns are: ?columns={wanted}",
-        titles[0].line,
-    )
+def _step_of_rate(text: RecordText, rate: Statement) -> float:
+    """The step of a rate of samples, perhaps in kHz [s]."""
+    number, _, unit = rate.value.partition(" ")
+    factor = 1e-3 if unit.lower().startswith("k") else 1.0
+    return factor / text.number(rate._replace(value=number), positive=True)

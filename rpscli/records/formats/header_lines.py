@@ -19,6 +19,7 @@ from rpscli.records.formats.statements import STATED_PATTERN, Statement
 from rpscli.records.quantities import (
     ACCELERATIONS,
     HERTZ_PATTERN,
+    NUMBER_PATTERN,
     TIME_UNITS,
     UNIT_PATTERN,
     canonical_unit,
@@ -26,11 +27,13 @@ from rpscli.records.quantities import (
     to_float,
 )
 from rpscli.records.words import (
+    BESIDE_QUANTITIES,
     COUNTED,
     DIRECTIONS,
     FACTORS,
     LIMITS,
     NOT_OF_THE_MOTION,
+    OTHER_QUANTITIES,
     PEAKS,
     PLACES,
     SAMPLING,
@@ -41,6 +44,8 @@ from rpscli.records.words import (
     UNITS,
     folded,
     speaks_of,
+    vocabulary,
+    words_of,
 )
 
 _UNIT = rf"(?:{UNIT_PATTERN})"
@@ -94,10 +99,16 @@ _SCALED = re.compile(
     r"(?<![?&(_-])\b(?:normali[sz]ed|normalis\w+|normier\w*|scaled|rescaled|skaliert"
     r"|escalad\w+"
     r"|scalat[oi]|normalizzat\w+|normalizad\w+|olceklen\w+|масштабир\w+|нормир\w+"
-    r"|amplified"
+    r"|amplified|factored|upscaled|downscaled|adjusted to|peak[- ]adjusted|unit amplitude"
+    r"|\d/\d+ (?:amplitude|scale|model)|times (?:two|three|four|five|ten)"
+    r"|reduced (?:by|to)|\d+ ?% (?:level|scale|amplitude)|at \d+ ?%|dimensionless"
+    r"|log10|squared|absolute values|derivative|normiran\w*|mise a l.echelle|a l.echelle"
+    r"|percent(?:age)?|per cent|porcentaje|percentuale|prozent|pourcent\w*|promille"
+    r"|per ?mil(?:le)?|hundredths?|thousandths?|tenths?"
     r"|divided?|dividid\w+|divis[oi]|multipli\w+|moltiplicat\w+|integrated|integriert"
     r"|integrad\w+|integrat[oi]|half|halved|doubled|twice|\d\s*times|x\s*\d|\*\s*\d)\b"
-    r"|^\W*[x×*]\s*\d"
+    r"|^\W*[x×*]\s*\d|規格化|正規化|正规化|归一化|放大|缩小|‰|1/1000"
+    r"|\bin \w+, kilo\b"
 )
 """Words of sentences that say that values are others than they look."""
 _RAW = re.compile(
@@ -108,6 +119,7 @@ _RAW = re.compile(
 )
 
 
+_LENGTHS = ("km", "mi", "miles", "kilometers")
 OF_SOMETHING_ELSE = NOT_OF_THE_MOTION | LIMITS | DIRECTIONS | PLACES | STRUCTURES
 """Keys whose numbers do not bear on the values."""
 
@@ -225,21 +237,29 @@ class HeaderLines:
         ]
 
 
+_LONGEST = 0.5
+"""Of a step [s]: what is longer is another time."""
+_PER_SAMPLE = re.compile(r"m?s/(?:sample|point|scan)")
+
+
 def _step_of(said: Said) -> float | None:
     """The step that a statement is of [s]; None if it is of something else."""
     number = said.number
+    if _PER_SAMPLE.fullmatch(said.unit_of_time):
+        return number * (1e-3 if said.unit_of_time.startswith("m") else 1.0)
     samples = speaks_of(said.key, SAMPLING)
     others = FACTORS | COUNTED | (NOT_OF_THE_MOTION - TIMES)
     if number <= 0.0 or not (samples or speaks_of(said.key, STEPS)):
         return None
     behind = said.unit_of_time
     if behind and behind in TIME_UNITS:
-        return None if speaks_of(said.key, others) else number * TIME_UNITS[behind]
+        step = number * TIME_UNITS[behind]
+        return None if speaks_of(said.key, others) or step > _LONGEST else step
     if speaks_of(said.key, others):
         return None
     if samples and (_RATE.fullmatch(behind) or (not behind and number > 1.0)):
         return 1.0 / number
-    return number if not behind and number <= 0.5 else None
+    return number if not behind and number <= _LONGEST else None
 
 
 def doubts_of_header(header: HeaderLines, facts: Facts) -> list[str]:
@@ -256,11 +276,78 @@ def doubts_of_header(header: HeaderLines, facts: Facts) -> list[str]:
             _refuse(header.text, said.words, said.line, facts)
     for index, line in header.lines:
         plain = folded(line[:_WIDTH])
-        if header.text.multiple is None and _SCALED.search(plain):
+        scaled = _SCALED.search(plain) or _is_factor_in_words(line)
+        if header.text.multiple is None and scaled:
             _refuse(header.text, line.strip()[:60], index, facts)
+        if header.text.multiple is None and _names_other_quantity(line):
+            raise header.text.fault(
+                f"{line.strip()[:60]!r} says that these are no accelerations; they were"
+                f" read in {facts.unit}: if that is right, say ?units=1 {facts.unit}",
+                index,
+            )
+        doubts += _other_counts(line, facts)
         if match := _RAW.search(plain):
             doubts.append(f"the header says {match[0]!r}: give the corrected record")
     return doubts
+
+
+_KEY_AND_WORDS = re.compile(r"\W*([^:=]{2,60}?)\s*[:=]\s*([^\W\d].*)")
+_NUMERALS = vocabulary(
+    "two three four five ten zwei drei vier funf zehn deux trois dix due tre dieci dos"
+    " tres diez iki uc on два три десять"
+)
+
+
+def _is_factor_in_words(line: str) -> bool:
+    """True of a factor whose value is a word."""
+    match = _KEY_AND_WORDS.fullmatch(line.strip())
+    return bool(
+        match and speaks_of(match[1], FACTORS) and {*words_of(match[2])} & _NUMERALS
+    )
+
+
+def _names_other_quantity(line: str) -> bool:
+    """True of a line, or of what stands behind its key, of words for another quantity."""
+    if re.search(r"\d", re.sub(r"\w*/\s?\w+\d?", "", line)):
+        return False
+    match = _KEY_AND_WORDS.fullmatch(line.strip())
+    for part in filter(None, (match[2] if match else "", line)):
+        words = words_of(part)
+        others = [word for word in words if speaks_of(word, OTHER_QUANTITIES)]
+        rest = (word for word in words if word not in others and len(word) > 2)
+        if others and all(speaks_of(word, BESIDE_QUANTITIES) for word in rest):
+            return True
+    return False
+
+
+_COUNT_FIRST = re.compile(
+    r"(?<![\d.,])(\d{3,})\s*(?:values|points|samples|data|werte|valori)\b"
+)
+_LASTS = re.compile(
+    r"^\W*(?:total |record )?(?:duration|dauer|duracion|duree|durata|sure(?:si)?"
+    r"|длительность|length|end time|time span)\b"
+)
+_FROM_TO = re.compile(r"^\s*0*(?:\.0*)?\s*(?:-|to|\.\.)\s*")
+
+
+def _other_counts(line: str, facts: Facts) -> Iterator[str]:
+    """Doubts about numbers of values and durations that the samples are not of."""
+    plain = folded(line)
+    if (match := _COUNT_FIRST.search(plain)) and int(match[1]) not in (
+        facts.values.size, facts.numbers
+    ):  # fmt: skip
+        yield f"the header says {match[0]}, and the file holds {facts.values.size}"
+    if not (match := _LASTS.match(plain)):
+        return
+    value = re.sub(r"^[^:=\d]*[:=]?\s*", "", plain[match.end() :])
+    value = _FROM_TO.sub("", value)
+    number = re.match(rf"({NUMBER_PATTERN}|\d+,\d+)\s*([^\W\d]*)", value)
+    if number is None or number[2] not in TIME_UNITS:
+        return
+    seconds = to_float(number[1].replace(",", ".")) * TIME_UNITS[number[2]]
+    lasts = facts.values.size * facts.step
+    if abs(seconds - lasts) > max(0.02 * lasts, 2.0 * facts.step):
+        yield f"the header says {line.strip()[:40]!r}, and the values last {lasts:.6g} s"
 
 
 def _refuse(text: RecordText, words: str, line: int, facts: Facts) -> None:
@@ -296,7 +383,7 @@ def _is_understood(said: Said, facts: Facts) -> bool:
         return said.number in (facts.values.size, facts.numbers)
     if speaks_of(said.key, FACTORS) and not speaks_of(said.key, LIMITS):
         return False
-    other = speaks_of(said.key, OF_SOMETHING_ELSE)
+    other = speaks_of(said.key, OF_SOMETHING_ELSE) or said.behind in _LENGTHS
     return other or _is_of_time(said, facts)
 
 

@@ -134,6 +134,8 @@ class RecordText:
     channel: str | None = None
     columns: str | None = None
     multiple: float | None = None
+    dt_counts: bool = False
+    """True if `dt` is given with its unit, and counts whatever the file says."""
 
     @cached_property
     def heads(self) -> tuple[str, ...]:
@@ -177,6 +179,7 @@ class RecordText:
         who does not contradict it.
         """
         dt = stated if self.dt is None else self.dt
+        stated = None if self.dt_counts else stated
         fault = ""
         if dt is None:
             raise self.fault(
@@ -194,10 +197,9 @@ class RecordText:
             )
         elif stated is not None and abs(dt - stated) > tolerance * dt:
             fault = (
-                f" contradicts the file, which says {stated} s; leave dt out, or correct"
-                " the"
+                f" contradicts the file, which says {stated} s; leave dt out, or say"
+                f" ?dt={dt:g} s if the file is wrong"
             )
-            fault += " file if its header is wrong"
         if fault:
             raise self.fault(f"dt = {dt} s{fault}")
         return dt
@@ -262,7 +264,7 @@ class RecordText:
 
     def count(self, stated: Statement) -> int:
         """The number of values that a header announces."""
-        numeral = stated.value.strip()
+        numeral = stated.value.strip().replace(",", "")
         count = int(numeral) if re.fullmatch("[0-9]{1,9}", numeral) else 0
         if not 0 < count <= MOST_VALUES:
             raise self.fault(
@@ -533,6 +535,7 @@ def read_text(path: Path, of: Source) -> RecordText:
         of.values.get("channel"),
         of.values.get("columns"),
         multiple,
+        re.search(r"[^\W\d_]\s*$", of.values.get("dt") or "") is not None,
     )
 
 

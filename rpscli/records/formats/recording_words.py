@@ -197,7 +197,9 @@ def place_of(line: str) -> str:
 
 
 def _is_inside(key: str, value: str) -> bool:
-    """True of a key of places whose value is one in a structure, or a height above ground."""
+    """True of a key of places whose value is one in a structure, or a height above
+    ground.
+    """
     if not speaks_of(key, PLACES | STRUCTURES):
         return False
     height = re.search(r"height|above ground|elevation above", key) is not None

@@ -11,7 +11,7 @@ from rpscli.records.quantities import NUMBER_PATTERN, UNIT_PATTERN, to_float
 STATED_PATTERN = rf"{NUMBER_PATTERN}(?:,[0-9]+)?"
 """A number as a header states it; one with a decimal comma is then refused by name."""
 
-_POWER = r"(?:\s*[x×*·]\s*10\s*(?:\^|\*\*)\s*[({]?[-+−]?[0-9]+[)}]?|\s*/\s*[0-9.]+)"
+_POWER = r"(?:\s*(?:[x×*·]\s*10\s*)?(?:\^|\*\*)\s*[({]?[-+−]?[0-9]+[)}]?|\s*/\s*[0-9.]+)"
 STEP_PATTERN = (
     r"\s*(?:[\[(]\s*([A-Za-z]+)\.?\s*[\])])?\s*[=:]?\s*"
     rf"({STATED_PATTERN}[.0-9]*{_POWER}?)"
@@ -77,6 +77,8 @@ def whole_number(value: str) -> str:
     >>> whole_number("5 x 10^-3 s"), whole_number("1/200"), whole_number("0.01 sec")
     ('0.005 s', '0.005', '0.01 sec')
     """
+    if of_ten := _POWER_OF_TEN.fullmatch(value.strip()):
+        value = f"1 x 10^{of_ten[1]} {of_ten[2]}"
     match = _WHOLE.fullmatch(value.strip())
     if match is None:
         return value
@@ -88,6 +90,7 @@ def whole_number(value: str) -> str:
     return f"{number} {unit or ''}".strip()
 
 
+_POWER_OF_TEN = re.compile(r"10\s*(?:\^|\*\*)\s*[({]?([-+−]?[0-9]+)[)}]?\s*([A-Za-z]*)")
 _WHOLE = re.compile(
     rf"({NUMBER_PATTERN})\s*(?:[x×*·]\s*10\s*(?:\^|\*\*)\s*[({{]?([-+−]?[0-9]+)[)}}]?"
     rf"|/\s*({NUMBER_PATTERN}))\s*([A-Za-z]*)"

@@ -15,7 +15,8 @@ from rpscli.records.formats.statements import Statement, statements
 from rpscli.records.quantities import numbers_in, numerals_in, why_no_numbers
 
 COUNT_PATTERN = (
-    r"\b(?:npts|ndata|number of (?:data|points|samples|values))\b\s*[=:]\s*([0-9]+)"
+    r"\b(?:npts|ndata|number of (?:data|points|samples|values))\b\s*[=:]\s*"
+    r"([0-9]{1,3}(?:,[0-9]{3})+(?![0-9])|[0-9]+)"
 )
 
 
@@ -43,7 +44,8 @@ class Table(NamedTuple):
 
 _QUOTED_COMMA = re.compile(r'"\s*([+-]?\d*),(\d+(?:[eE][+-]?\d+)?)\s*"')
 _CLOCK = re.compile(
-    r"^\s*\"?(?:\d{4}[-/]\d{1,2}[-/]\d{1,2}[ T])?(\d{1,2}):(\d{2}):(\d{2})([.,]\d+)?Z?\"?"
+    r"^\s*\"?(?:(?:\d{4}[-/]\d{1,2}[-/]\d{1,2}|\d{1,2}[./]\d{1,2}[./]\d{4})[ T])?"
+    r"(?:(\d{1,2}):(\d{2}):(\d{2})([.,]\d+)?|()(\d{1,2}):(\d{2})([.,]\d+))Z?\"?"
     r"(?=[\s,;]+[-+.\d])"
 )
 
@@ -55,8 +57,9 @@ def plain_line(line: str) -> str:
     of seconds.
     """
     if ":" in line and (match := _CLOCK.match(line)):
-        hour, minute, second = map(int, match.groups()[:3])
-        part = (match[4] or "").replace(",", ".")
+        own = match.groups()[:4] if match[1] else match.groups()[4:]
+        hour, minute, second = (int(each or 0) for each in own[:3])
+        part = (own[3] or "").replace(",", ".")
         line = f"{3600 * hour + 60 * minute + second}{part}{line[match.end() :]}"
     if '"' in line:
         line = _QUOTED_COMMA.sub(r"\1.\2", line).replace('"', " ")

@@ -27,7 +27,7 @@ _OTHER_UNITS = {
 }
 _TIME_UNITS = (
     r"s|secs?|seconds?|seg|segundos?|sn|saniye|с|сек|秒|sek\w*|secondes?|secondi"
-    r"|ms|msec|msecs|milliseconds?|мс"
+    r"|ms|msec|msecs|milliseconds?|мс|[uµμ]s(?:ec)?|microsec\w*"
 )
 _SPELT = {
     "cm_s2": "cm/s2", "m_s2": "m/s2", "mps2": "m/s2", "cmps2": "cm/s2", "m_s_2": "m/s2",
@@ -69,6 +69,10 @@ _SPECTRAL = re.compile(
     r"|_)(?:p?s_?[adve]|psa|psv|t_?n|rsa|se|sae)(?:$|\b|_)",
     re.IGNORECASE,
 )
+MATCHED = re.compile(
+    r"compat|match|target|uyumlu|angepasst|natural|filter|corner|removed|correct"
+)
+"""Words that make a spectrum that of which a motion was made."""
 _OTHERS = {
     "velocity": r"\bvel\w*|\bv\b",
     "displacement": r"\bdispl?\w*|\bdisp\b",
@@ -78,6 +82,8 @@ _OTHERS = {
     "a drift": r"\bdrift",
     "a distance": r"\bdist\w*|\bdepth\b",
 }
+_CHANGED = re.compile(r"[²³|]|\^\s*[23]|\blog|\babs|\bsq(?:r|uared?)?\b", re.IGNORECASE)
+"""Marks of what is computed from values."""
 _COUNT = re.compile(
     r"(?:sample|index|indice|indeks|idx|no\.?|nr\.?|n|i|num(?:ber)?|#|row|point|sira"
     r"|nummer)s?",
@@ -106,8 +112,10 @@ class ColumnTitle(NamedTuple):
     @property
     def kind(self) -> str:  # noqa: PLR0911 -- a rule a line
         """Kind of what the column holds, `UNKNOWN` where its title is not understood."""
-        if _SPECTRAL.search(self.name):
+        if _SPECTRAL.search(self.name) and not MATCHED.search(folded(self.name)):
             return "a spectrum"
+        if _CHANGED.search(self.name):
+            return UNKNOWN
         timed = re.fullmatch(_TIME_UNITS, self.unit, re.IGNORECASE) is not None
         accelerates = canonical_unit(self.unit or "-") is not None
         if self.name != "T" and _TIME.fullmatch(folded(self.name)):

@@ -78,7 +78,9 @@ class _Compared(NamedTuple):
 
 
 def rotation(study: StoredPoints, options: RotationOptions) -> Found:
-    """Largest rotations over alpha of each system and of the reference (paper, Figure 7)."""
+    """Largest rotations over alpha of each system and of the reference (paper, Figure
+    7).
+    """
     compared = _compared(study, options)
     names, rows = _rows(study, compared)
     heads = f"outcome, rotation_over_alpha, reference {compared.key}, reference_outcome"

@@ -18,6 +18,7 @@ power law throughout gives rate = H(median) exp(k^2 beta^2/2).
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -71,6 +72,12 @@ def read_hazard(path: Path, measure: Measure) -> Hazard:
             " rows"
         )
     factor, shares = _head(table, measure)
+    for line, text in table.remarks:
+        if match := _OTHERWISE.search(text):
+            raise CaseError(
+                f"{path}:{line}: the remark {shown(text)} says {match[0]!r}, and the"
+                " column is taken as rates a year: write these, and take it away"
+            )
     points = np.array([_numbers(path, row, len(shares) + 2) for row in rows])
     for (line, cells), steps in zip(rows[1:], np.diff(points, axis=0), strict=True):
         if steps[0] <= 0.0:
@@ -95,6 +102,13 @@ def _header(measure: Measure) -> str:
 
 RATES = ("rate", "mean", "afe", "annual rate", "annual frequency of exceedance")
 """Names of the column of rates."""
+
+_OTHERWISE = re.compile(
+    r"\btimes\b|\bfactor\b|\bscale|x ?10|probabilit|\bpoe\b"
+    r"|\d+ ?(?:yr|years?|jahre?|ans?|anni)\.? (?:exceed|uber|depass|super|eccedenza)",
+    re.IGNORECASE,
+)
+"""Words of remarks that say that rates are others than they look."""
 
 POE = (
     " probabilities of exceedance become rates by -ln(1 - poe)/t, with the investigation"

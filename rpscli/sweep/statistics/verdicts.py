@@ -63,7 +63,9 @@ class Verdict:
 
     @property
     def decisive(self) -> float:
-        """The value that is held against the limit: of a fractile, a mean, or the worst."""
+        """The value that is held against the limit: of a fractile, a mean, or the
+        worst.
+        """
         if self.fractile is not None:
             return self.fractile
         of_mean = self.judged_by == "mean" and self.mean is not None

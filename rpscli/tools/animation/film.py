@@ -310,7 +310,9 @@ def history_film(
 def _detail(
     axes: style.Axes, result: TimeHistoryResult, samples: NDArray[np.int64]
 ) -> tuple[PlanView | BearingView, NDArray[Any]]:
-    """A column from above for pairs, else an end of it; and what each frame shows of it."""
+    """A column from above for pairs, else an end of it; and what each frame shows of
+    it.
+    """
     if result.trace.y is not None:
         return PlanView(axes, result), samples
     detail = BearingView(axes, result.structure)

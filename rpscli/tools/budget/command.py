@@ -157,7 +157,9 @@ DIMENSIONS = (
     *("semi_diagonal", "slenderness", "wedge_slenderness", "curvature_ratio"),
     *("height", "width", "wedge_width", "radius"),
 )
-"""Of columns, by their keys: ratios and a semi-diagonal, or the lengths in their place."""
+"""Of columns, by their keys: ratios and a semi-diagonal, or the lengths in
+their place.
+"""
 
 
 def _values(case: Case) -> Iterator[tuple[str, ...]]:

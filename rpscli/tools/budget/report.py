@@ -97,7 +97,9 @@ class Effect(NamedTuple):
         return np.asarray((self.values != own) & ~np.isnan(size) & (far | other_sign))
 
     def move(self, row: int) -> float:
-        """Size of the change over the value as the case is; infinite where it overturns."""
+        """Size of the change over the value as the case is; infinite where it
+        overturns.
+        """
         value = self.values[row]
         own = self.values[0]
         if np.isnan(value) or value == own:
@@ -222,7 +224,9 @@ class Budget:
 
     @cached_property
     def inputs(self) -> list[int]:
-        """Rows that are no other records, but for the first: what moves most comes first."""
+        """Rows that are no other records, but for the first: what moves most comes
+        first.
+        """
         rows = [n for n, row in enumerate(self.rows) if n and row.cause != RECORDS]
         return sorted(rows, key=lambda n: -max(e.move(n) for e in self.effects))
 

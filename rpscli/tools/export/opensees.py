@@ -36,7 +36,9 @@ LOSS = {loss}  # N s/m, for impacts
 
 
 def build(ground, dt, released=0.0):
-    """Nodes 0 (ground), 1 (cap beam) and floors above it; ground accelerations [m/s2] every dt."""
+    """Nodes 0 (ground), 1 (cap beam) and floors above it; ground accelerations [m/s2]
+    every dt.
+    """
     ops.wipe()
     ops.model("basic", "-ndm", 1, "-ndf", 1)
     ops.node(0, 0.0)

@@ -25,7 +25,9 @@ from rpscli.tools.identify.estimates import Estimate, Identified, estimate
 
 MOST_SWINGS = 12
 FEWEST_OF_DRIFT = 5
-"""Swings after the first one with which an offset and a slope of the sensor are fitted."""
+"""Swings after the first one with which an offset and a slope of the sensor
+are fitted.
+"""
 DRIFT = 0.1
 """Largest offset, and change of it in all swings, over the amplitude of the first one."""
 SEEN = 20.0

@@ -256,7 +256,9 @@ def _of_logarithms(
 def vibration_of_case(
     structure: PodiumStructure, test: str, columns: Mapping[str, Array]
 ) -> Identified:
-    """First period and damping of a building before uplift, and the contact of its podium."""
+    """First period and damping of a building before uplift, and the contact of its
+    podium.
+    """
     building = structure.superstructure
     if building is None:
         raise UsageError(

@@ -262,7 +262,9 @@ def _chosen(asked: SelectionOptions, terminal: Terminal) -> Chosen:
 def _request(
     asked: SelectionOptions, comparison: ComparedPeriods, sources: Sequence[str]
 ) -> SelectionRequest:
-    """The set that is wanted, of the kind of spectra that options, rules or target name."""
+    """The set that is wanted, of the kind of spectra that options, rules or target
+    name.
+    """
     from rpscli.records.source import Source
     from rpscli.tools.selection.request import SelectionRequest
 
