@@ -83,6 +83,14 @@ class UpliftedModes(Shown):
         return 2.0 * math.pi / rate if rate > 0.0 else None
 
     @property
+    def own_damping(self) -> float | None:
+        """-Re(lambda)/|lambda| of the podium itself while it swings; None if it does
+        not.
+        """
+        value = complex(self.eigenvalues[0])
+        return None if self.own_period is None else -value.real / abs(value)
+
+    @property
     def own_growth_time(self) -> float | None:
         """Time in which a tilt that falls away grows e-fold [s];
         None if it does not grow.

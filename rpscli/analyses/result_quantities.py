@@ -312,6 +312,7 @@ FIXED_BASE_MODES = (_FREQUENCIES, _Q("periods", "s", "period", "$T$"), _DAMPING)
 """Lists by mode in full contact."""
 
 ORDER = "exact where the state begins; under first_order the paper's, for small alpha"
+UNDAMPED = f"undamped, without dampers; {ORDER}"
 
 UPLIFTED_MODES = (_FREQUENCIES, _DAMPING)
 """Lists by vibration mode of a linearised uplifted state."""
@@ -323,7 +324,13 @@ UPLIFTED_RATIOS = (
 """Lists by vibration mode, over those of the fixed base."""
 
 FREQUENCY_PARAMETERS = (
-    _Q("frequency_parameter", "rad/s", "frequency parameter", "$p_{ext}$", meaning=ORDER),
+    _Q(
+        "frequency_parameter",
+        "rad/s",
+        "frequency parameter",
+        "$p_{ext}$",
+        meaning=UNDAMPED,
+    ),
     _Q(
         "frequency_parameter_rigid",
         "rad/s",
@@ -340,6 +347,7 @@ LINEAR = (*UPLIFTED_MODES, *UPLIFTED_RATIOS, *FREQUENCY_PARAMETERS)
 OWN_MOTION = (
     _Q("own_motion", "", "the podium's own mode"),
     _Q("own_period", "s", "its period, if it oscillates", "$T$"),
+    _Q("own_damping", "-", "its damping ratio, if it oscillates", r"$\xi$"),
     _Q("own_growth_time", "s", "time of e-fold growth, if it diverges"),
 )
 """The podium's own mode in words and times."""

@@ -8,7 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rpscli.case.conditions import Condition, conditions_of, unknown_of_pairs
+from rpscli.case.conditions import (
+    Condition,
+    case_conditions,
+    conditions_of,
+    unknown_of_pairs,
+)
 from rpscli.commands import inputs
 from rpscli.commands.shell import options
 from rpscli.errors import CaseError, RecordError, RpsError, UsageError
@@ -26,6 +31,7 @@ from rpscli.report.derived import (
     label_of,
     strength_tables,
     strengths_by_way,
+    twist_texts,
 )
 from rpscli.report.files import heading
 from rpscli.report.table import Heading, Part, Table, large, shown
@@ -96,7 +102,7 @@ def command(
         inputs.write(folder, out.terminal)
         document["files"] = folder.files
     out.terminal.warn(doubts)
-    limits = conditions_of(given.case.limits, "limits of the case")
+    limits = case_conditions(given.case.limits, given.case.structure)
     others = _further_tables(structure, document)
     other = ["in the direction x; --direction y shows the other"]
     other *= direction == "x" and structure.superstructure_y is not None
@@ -243,6 +249,7 @@ def _further_tables(
     structure: PodiumStructure, document: Mapping[str, Any]
 ) -> Iterator[Part]:
     """Of the wind, of devices, of storeys that yield."""
+    yield from twist_texts(structure)
     yield from wind_table(document["wind"])
     yield from device_tables(structure, document)
     yield from strength_tables(structure)

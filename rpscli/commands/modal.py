@@ -17,6 +17,7 @@ from rpscli.commands.inputs import (
 )
 from rpscli.commands.shell import options
 from rpscli.errors import listed
+from rpscli.report.derived import twist_texts
 from rpscli.report.figures.look import FilmRequest
 from rpscli.report.table import Heading, Part, Table, measured, shown
 
@@ -85,6 +86,7 @@ def _tables(result: ModalResult, title: str, left_out: Collection[str]) -> Itera
     yield NEVER_LIFTS if rolls else ORDER
     if result.left_out:
         yield f"Not in the modes: {listed(result.left_out, 'and')}."
+    yield from twist_texts(result.structure)
     yield from _full_contact(result)
     if (fixed := result.fixed_base) is None:
         return
@@ -119,7 +121,13 @@ def _own_mode_table(result: ModalResult) -> Table:
         numbers = modes.frequency_parameter, paper.frequency_parameter
         rigid = modes.frequency_parameter_rigid
         rows.append((name, modes.own_motion, *map(shown, (*numbers, rigid))))
-    heads = ("podium's own mode", "", "p_ext rad/s", FIRST_ORDER, "rigid estimate")
+    heads = (
+        "podium's own mode",
+        "",
+        "undamped p_ext rad/s",
+        FIRST_ORDER,
+        "rigid estimate",
+    )
     return Table.of_texts(heads, rows, words=2)
 
 

@@ -32,6 +32,7 @@ from rpscli.sweep.estimate import estimated_seconds
 from rpscli.sweep.names import labels
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.run import Progress, Start
+from rpscli.sweep.statistics.grouping import shown_keys
 from rpscli.sweep.store import Store
 from rpscli.sweep.systems import balance_note
 
@@ -357,7 +358,8 @@ def show_dry_run(
     time = f"about {duration(seconds)} on {jobs} cores, by {source}"
     listing = [*((name, str(number)) for name, number in counts.items()), ("time", time)]
     tried = [
-        (f"point {n}", labels([*each], [*each.values()])) for n, each in points.items()
+        (f"point {n}", labels(shown_keys(layout, [*each]), [*each.values()]))
+        for n, each in points.items()
     ]
     parts = (Heading(study.title), Table.listing(listing), Table.listing(tried))
     terminal.result(document, parts)

@@ -516,7 +516,7 @@ def _verdict_parts(computed: Sequence[Computed]) -> Iterator[Part]:
         yield Table.of_texts(["case", *VERDICT], rows, words=5, keys=2)
     for case in computed:
         of = f"{case.first.case_label}: " * (len(computed) > 1)
-        yield from doubt_texts(case.verdicts, of)
+        yield from doubt_texts(case.verdicts, of, several=True)
 
 
 def _records(case: Computed) -> Records:

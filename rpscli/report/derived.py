@@ -577,3 +577,24 @@ def strength_tables(structure: PodiumStructure) -> Iterator[Part]:
     building = structure.superstructure
     if building is not None and building.yields_by_first_mode:
         yield f"{UPPER} (one history of six storeys: ductility 1.8 of the first, 6.7 of the last)"
+
+
+def twist_texts(structure: PodiumStructure) -> Iterator[str]:
+    """Twist of the storeys on the slab, which modes and statics of its centre leave out."""
+    twist = structure.twist
+    above = structure.superstructure
+    if twist is None:
+        return
+    yield "The slab turns in time histories alone: not in these modes and forces."
+    if above is None:
+        return
+    lengths = (max(rows) - min(rows) for rows in (structure.rows, structure.rows_y))
+    e_x, e_y = (
+        part * length for part, length in zip(twist.eccentricity, lengths, strict=True)
+    )
+    period = float(above.periods[0]) / twist.period_ratio
+    yield (
+        f"Storeys twist on it with a first period of {shown(period)} s, not coupled"
+        f" (superstructure.torsion.period_ratio {twist.period_ratio:g}); their centres of"
+        f" stiffness stand {shown(e_x)} m in x and {shown(e_y)} m in y from those of mass."
+    )

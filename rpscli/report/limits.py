@@ -129,9 +129,12 @@ def worst_text(verdict: Verdict) -> str:
     )
 
 
-def doubt_texts(verdicts: Sequence[Verdict], of: str = "") -> Iterator[str]:
+def doubt_texts(
+    verdicts: Sequence[Verdict], of: str = "", *, several: bool = False
+) -> Iterator[str]:
     """Each verdict that changes beside the histories reverse; values with one percent
-    less and more motion of all that has a limit.
+    less and more motion of all that has a limit, and what was not looked at so, which of
+    a single history is told elsewhere where it is all: not of `several`.
     """
     for verdict in verdicts:
         if not verdict.reversed_by:
@@ -147,6 +150,13 @@ def doubt_texts(verdicts: Sequence[Verdict], of: str = "") -> Iterator[str]:
         if verdict.near and verdict.condition.name not in EVENTS
     ]:
         yield f"{of}with 1 % less or more motion {', '.join(near)}"
+    unseen = [
+        verdict.condition.name
+        for verdict in verdicts
+        if not verdict.near and verdict.condition.name not in EVENTS
+    ]
+    if unseen and (near or several):
+        yield f"{of}not followed with 1 % less or more motion: {', '.join(unseen)}"
 
 
 def _changes_text(verdict: Verdict) -> str:

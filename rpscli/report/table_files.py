@@ -40,14 +40,15 @@ def latex_text(text: str) -> str:
     return "".join(SIGNS.get(letter, letter) for letter in text)
 
 
-def latex(table: Table, title: str) -> str:
+def latex(table: Table, title: str, remarks: Iterable[str] = ()) -> str:
     """The table as readers see it, with rules of booktabs; words stand left, numbers
-    right.
+    right. Remarks are comments.
     """
     sides = "l" * table.words + "r" * (len(table.heads) - table.words)
     rows = [_latex_row(row) for row in table.rows]
     return "\n".join([
         rf"% {' '.join(title.split())}; needs \usepackage{{booktabs}}",
+        *(f"% {' '.join(text.split())}" for text in remarks),
         rf"\begin{{tabular}}{{{sides}}}",
         r"\toprule",
         _latex_row(table.heads),

@@ -155,7 +155,7 @@ def test_the_moment_along_the_tilt_is_that_of_the_plane():
 def test_the_ground_beside_floors_is_the_resultant():
     axes, peak = Figure().subplots(), KINDS["rolls"]().record.pga
     draw_accelerations(axes, turned())
-    assert curve(axes, f"PGA = {peak:.3g} m/s²")[0][0] == pytest.approx(peak)
+    assert curve(axes, f"PGA, resultant = {peak:.3g} m/s²")[0][0] == pytest.approx(peak)
 
 
 def test_panels_of_pairs_refuse_one_component():

@@ -56,7 +56,9 @@ def test_a_table_of_systems_has_names_numbers_and_words_for_what_overturned(stud
     report = "table: {rows: scale, statistic: largest, formats: [tex]}"
     _, files = files_of(study_of, report, text)
     heads, *rows = rows_of(files["x.tex"].replace(r"B \& C", "B+C"))
-    assert heads == ["scale", r"A\_1", "B+C", "flat", "counted", "failed"]
+    of = ": rotation ratio, largest"
+    named = [rf"A\_1{of}", f"B+C{of}", f"flat{of}"]
+    assert heads == ["scale", *named, "histories", "failed"]
     assert rows[1][1:] == ["overturned", "overturned", "0.750", "18", "0"]
     assert "inf" in files["x.csv"]
 
@@ -126,6 +128,6 @@ def test_the_command_writes_them(sweep):
     (sheet,) = openpyxl.load_workbook(FOLDER / "overturning.xlsx").worksheets
     assert sheet.max_row == 1 + len(csv_rows("overturning.csv"))
     heads, *rows = rows_of((FOLDER / "overturning.tex").read_text(encoding="utf-8"))
-    assert heads[-2:] == ["counted", "failed"]
+    assert heads[-2:] == ["histories", "failed"]
     assert len(rows) == len(csv_rows("overturning.csv"))
     assert csv_text([Column("a", "-", [1])]) == "a [-]\n1\n"

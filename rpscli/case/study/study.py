@@ -7,7 +7,7 @@ import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path as Folder
 from typing import Any
 
@@ -311,8 +311,11 @@ def _with_linked(
         values: tuple[Values, ...] = tuple(
             (*old, new) for old, new in zip(axis.rows, sums, strict=True)
         )
-        longer = Axis(
-            (*axis.keys, key), values, (*axis.places, (document.value_place(path),))
+        longer = replace(
+            axis,
+            keys=(*axis.keys, key),
+            rows=values,
+            places=(*axis.places, (document.value_place(path),)),
         )
         axes = tuple(longer if each is axis else each for each in axes)
     return axes

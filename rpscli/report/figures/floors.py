@@ -85,7 +85,8 @@ def draw_accelerations(axes: style.Axes, result: TimeHistoryResult) -> None:
     # The samples of a vertical component would stand behind those of both.
     both = result.motion.samples[: 1 if result.motion.y is None else 2]
     pga = float(np.linalg.norm(both, axis=0).max())
-    axes.axvline(pga, color=style.GREY, lw=0.9, ls=":", label=f"PGA = {pga:.3g} m/s²")
+    of = "PGA" if len(both) == 1 else "PGA, resultant"
+    axes.axvline(pga, color=style.GREY, lw=0.9, ls=":", label=f"{of} = {pga:.3g} m/s²")
     axes.set_xlabel(FLOOR_ACCELERATIONS.axis_label)
     _levels(axes, result.structure.storeys)
 

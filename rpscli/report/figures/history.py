@@ -411,12 +411,19 @@ def draw_energy(axes: style.Axes, result: TimeHistoryResult) -> None:
         * bool(made.upwards),
         *[(trace.energy_bed, "dissipated in the joints", style.BLUE)] * bool(made.bed),
         *[(trace.energy_yielded, "yielding of storeys", YIELDED)] * made.yields,
-        *zip(trace.devices.energy.T, names, cycle(DEVICE_COLOURS), strict=False),
+    ]
+    taken = {colour for *_, colour in parts}
+    free = [colour for colour in DEVICE_COLOURS if colour not in taken]
+    parts += zip(trace.devices.energy.T, names, cycle(free), strict=False)
+    impacts = [
         (
             trace.energy_impact,
             f"lost at {'passes' if passes else 'impacts'} (net)",
             style.ORANGE,
-        ),
+        )
+    ]
+    parts += [
+        *impacts * (not made.bearing.is_spherical),
         (trace.energy_stored, "kinetic, elastic and gravitational", style.GREEN),
     ]
     few = slice(None, None, 1 + len(trace.time) // MOST)

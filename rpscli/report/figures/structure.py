@@ -140,6 +140,7 @@ def draw_mode(axes: style.Axes, result: ModalResult, state: str, mode: int) -> N
     modes = result.uplifted[state]
     levels = np.concatenate([[0.0], level_heights(result.structure)])
     shape = modes.shapes[:, mode]
+    lifts = not result.structure.bearing.is_spherical
     if mode and result.fixed_base is not None:
         full = np.concatenate([[0.0, 0.0], result.fixed_base.shapes[:, mode - 1]])
         if result.full_contact is not None:  # in which the cap beam moves as well
@@ -151,10 +152,15 @@ def draw_mode(axes: style.Axes, result: ModalResult, state: str, mode: int) -> N
             ls="--",
             marker="o",
             ms=2.5,
-            label="full contact",
+            label="full contact" if lifts else "fixed base",
         )
     axes.plot(
-        [0.0, *shape], levels, color=style.BLACK, marker="o", ms=2.5, label="uplifted"
+        [0.0, *shape],
+        levels,
+        color=style.BLACK,
+        marker="o",
+        ms=2.5,
+        label="uplifted" if lifts else "on bearings",
     )
     if len(shape) > 1:
         elastic = [0.0, *(shape[1:] - shape[0])]
@@ -236,11 +242,16 @@ def draw_force(axes: style.Axes, result: PushoverResult) -> None:
     F = factor * curve.force
     back = factor * curve.unloading_force
     returns = bool(np.any(back != F))
+    lifts = not result.structure.bearing.is_spherical
     if returns:
         axes.axhline(0.0, color=style.GREY, lw=0.6)
     if F[0] > 0.0:
         axes.plot(
-            [0.0, 0.0], [0.0, F[0]], color=style.BLACK, lw=2.0, label="full contact"
+            [0.0, 0.0],
+            [0.0, F[0]],
+            color=style.BLACK,
+            lw=2.0,
+            label="full contact" if lifts else "held upright",
         )
     for inside, colour, name in _phases(result):
         axes.plot(u[inside], F[inside], color=colour, lw=2.0, label=name)
@@ -252,7 +263,8 @@ def draw_force(axes: style.Axes, result: PushoverResult) -> None:
     # Above the name of beta, if that stands to the left of its point.
     higher = 18.0 if returns else 6.0
     if F[0] > 0.0:
-        _mark(axes, 0.0, F[0], "uplift", (8.0, -4.0 if rises else higher))
+        begins = "uplift" if lifts else "rolling begins"
+        _mark(axes, 0.0, F[0], begins, (8.0, -4.0 if rises else higher))
     if 0.0 < beta < result.critical_rotation:
         at = int(np.searchsorted(curve.rotation, beta))
         side = (-7.0 if F[at + 1] > F[at] else 7.0, 6.0)
@@ -306,9 +318,7 @@ def capacity_figure(result: PushoverResult, title: str, figure: style.Figure) ->
     ending = "a mechanism" if never else "the critical rotation"
     style.begin(figure, (title, f"floor forces pushed to {ending}"), 3.6)
     ratios = [1.6] if never else [1.6, 1.0]
-    panels = figure.subplots(
-        1, len(ratios), sharey=True, width_ratios=ratios, squeeze=False
-    )[0]
+    panels = figure.subplots(1, len(ratios), width_ratios=ratios, squeeze=False)[0]
     for axes in panels:
         draw_capacity(axes, result)
     if not never:
@@ -316,8 +326,28 @@ def capacity_figure(result: PushoverResult, title: str, figure: style.Figure) ->
         uplift = float(np.nanmax(lifts))
         close.set_xlim(0.0, 3.0 * uplift or 0.1 * whole.get_xlim()[1])
         close.locator_params(axis="x", nbins=3 if style.narrow(figure) else 5)
-        close.set(ylabel="", title="near uplift" if uplift else "where rolling begins")
+        close.set_ylim(whole.get_ylim()[0], _largest_within(close, result))
+        close.set(ylabel="", title=f"near {begins_with(result)}")
     style.legend_below(figure, panels[-1:])
+
+
+def begins_with(result: PushoverResult) -> str:
+    """What the motion of the columns begins with."""
+    lifts = result.uplift_force and not result.structure.bearing.is_spherical
+    return "uplift" if lifts else "the beginning of rolling"
+
+
+def _largest_within(axes: style.Axes, result: PushoverResult) -> float:
+    """Upper end of an axis of forces that holds all curves within its displacements."""
+    factor, _ = style.engineering(
+        max(c.sum_of_floor_forces.max() for c in result.capacity)
+    )
+    end = axes.get_xlim()[1]
+    inside = [
+        factor * curve.sum_of_floor_forces[curve.roof_displacement <= end]
+        for curve in result.capacity
+    ]
+    return 1.15 * max(float(each.max(initial=0.0)) for each in inside) or 1.0
 
 
 def draw_capacity(axes: style.Axes, result: PushoverResult) -> None:
@@ -346,8 +376,7 @@ def draw_capacity(axes: style.Axes, result: PushoverResult) -> None:
             roof = curve.roof_displacement[at]
             axes.plot(roof, factor * force, "D", color=colour, ms=4.5, clip_on=False)
     if any(curve.roof_displacement_at_uplift >= 0.0 for curve in result.capacity):
-        begins = "uplift" if result.uplift_force else "rolling begins"
-        axes.plot([], [], "o", color=style.GREY, ms=4.5, label=begins)
+        axes.plot([], [], "o", color=style.GREY, ms=4.5, label=begins_with(result))
     if any(curve.yielding for curve in result.capacity):
         axes.plot([], [], "D", color=style.GREY, ms=4.5, label="first yield of a storey")
     lowest = min(0.0, *(factor * np.min(c.sum_of_floor_forces) for c in result.capacity))

@@ -29,6 +29,7 @@ from rpscli.report.table import (
     Table,
     columns_of,
     csv_text,
+    large,
     percent,
     records,
     shown,
@@ -142,7 +143,7 @@ class Found:
             for suffix, columns in self.tables.items():
                 if suffix in (self.shown or [""]):
                     table = _readable(columns, self.shown.get(suffix, {}))
-                    yield f"{stem}{suffix}.tex", latex(table, title)
+                    yield f"{stem}{suffix}.tex", latex(table, title, self._remarks())
         if "xlsx" in formats:
             sheets = {
                 suffix.lstrip("_") or stem: columns
@@ -154,6 +155,11 @@ class Found:
             for number, sheet in enumerate(self.sheets(look), start=1)
         }
         yield from figure_files(draws, look).items()
+
+    def _remarks(self) -> list[str]:
+        """What stands above its figure and below its table."""
+        above = getattr(self.figure, "above", ())
+        return [*filter(None, (*above, self.remark))]
 
     def sheets(self, look: Look = USUAL) -> Sequence[Callable[[str], Draw]]:
         """The figure in parts of at most a page, if it knows how; none without one."""
@@ -195,7 +201,7 @@ def _readable(columns: Sequence[Column], labels: Mapping[str, str]) -> Table:
     named = named_cells(columns)
     for column in columns:
         name = column.name
-        unit = column.unit
+        factor, unit = large(1.0, column.unit)
         values = known[column.name]
         if name in named:
             heads += [symbol(name)] * bool(named[name])
@@ -213,11 +219,13 @@ def _readable(columns: Sequence[Column], labels: Mapping[str, str]) -> Table:
             cells.append(texts)
             words = len(heads)
             continue
-        heads.append(own if own.endswith(unit) else f"{own} {unit}".removesuffix(" -"))
+        values = [_times(value, factor) for value in values]
+        heads.append(own if own.endswith(unit) else f"{own} {unit}".rstrip())
         # The band of a count is that of its share.
         stem = name.removesuffix("_share")
         if f"{name}_share" not in known and stem + ENDS[0] in known:
-            rows = zip(values, *(known[stem + end] for end in ENDS), strict=True)
+            ends = ([_times(v, factor) for v in known[stem + end]] for end in ENDS)
+            rows = zip(values, *ends, strict=True)
             cells.append([with_band(*row) for row in rows])
         elif name.startswith("share_"):
             cells.append(
@@ -226,6 +234,11 @@ def _readable(columns: Sequence[Column], labels: Mapping[str, str]) -> Table:
         else:
             cells.append([OVERTURNED.get(str(v)) or shown(v, 3) for v in values])
     return Table.of_texts(heads, zip(*cells, strict=True), words=words, keys=words)
+
+
+def _times(value: Any, factor: float | None) -> Any:
+    """A number in a larger unit; words and whole numbers as they are."""
+    return value * factor if isinstance(value, float) and factor else value
 
 
 @dataclass(frozen=True)

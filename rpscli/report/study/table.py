@@ -114,11 +114,14 @@ def _statistic(
 
 
 class Subject(NamedTuple):
-    """The result of which cells are made: name, unit, words of the picture, and how."""
+    """The result of which cells are made: name, unit, words of the picture and of a head,
+    and how.
+    """
 
     result: str
     unit: str
     words: str
+    head: str
     make: Callable[[Histories], Cell]
 
 
@@ -129,14 +132,15 @@ def _subject(table: Points, options: TableOptions) -> Subject:
         every = Histories(table, (), np.arange(len(table)))
         if behind := every.overturned.behind:
             words += f", which counts{behind.removeprefix(' from')}"
-        return Subject("overturned", "-", words, _share)
+        return Subject("overturned", "-", words, "overturned", _share)
     quantity = SCALARS["timehistory"][options.result]
     values = table.columns[options.result]
     stood = values[np.isfinite(values) & ~table.overturned]
     largest = stood.max(initial=0.0) or 1.0
     words = f"{quantity.in_unit(quantity.unit)}: {statistic_words(options.statistic)}"
     make = partial(_statistic, values=values, wanted=options.statistic, largest=largest)
-    return Subject(options.result, quantity.unit, words, make)
+    head = f"{quantity.label}, {statistic_words(options.statistic)}"
+    return Subject(options.result, quantity.unit, words, head, make)
 
 
 def table_report(study: StoredPoints, options: TableOptions) -> Found:
@@ -163,10 +167,10 @@ def table_report(study: StoredPoints, options: TableOptions) -> Found:
     for place, values_across in enumerate(columns):
         named = zip(column_keys, values_across, strict=True)
         name = ";".join(f"{key}={tick_of(key, value)}" for key, value in named)
-        head = labels(column_keys, values_across) or subject.result
+        head = ": ".join(filter(None, (labels(column_keys, values_across), subject.head)))
         of_column = [row[place] for row in cells]
         written += _cell_columns(subject, (name, head), of_column, nothing)
-    written.append(Column("counted", "-", [len(row) for row in rows.groups]))
+    written.append(Column("counted", "-", [len(row) for row in rows.groups], "histories"))
     written.append(Column("failed", "-", [row.failed for row in rows.groups]))
 
     heads = ["\n".join(label_parts(column_keys, values)) or "all" for values in columns]

@@ -48,7 +48,7 @@ BETWEEN = " / "
 MOST_BARS = 24
 """In the picture; the table has all."""
 CAPTION = (
-    "orange: factor 2, red: other verdict, dots: records; overturned at the right end"
+    "orange: factor 2, red: other verdict, dots: records; arrows: overturned, or farther"
 )
 
 
@@ -137,6 +137,16 @@ def _stem(change: str) -> tuple[str, float]:
     return (found[1], float(found[2])) if found else (change, 0.0)
 
 
+def _without_record(change: str) -> str:
+    """A change without the source of its record, and the factor with four digits.
+
+    >>> _without_record("--record x?both --scale 0.962040295058"), _without_record("e=1")
+    ('factor 0.962', 'e=1')
+    """
+    plain = re.sub(r"--record \S+\s*", "", change)
+    return re.sub(r"--scale (\S+)", lambda match: f"factor {float(match[1]):.4g}", plain)
+
+
 def _word(exceeded: object) -> str:
     return "EXCEEDED" if exceeded else "met"
 
@@ -145,9 +155,9 @@ def _over(value: float, own: float) -> str:
     """A value over that of the case; ``-`` where one of them is none."""
     if np.isinf(value):
         return "overturned"
-    return (
-        "-" if np.isnan(value) or not (own and np.isfinite(own)) else f"{value / own:.3g}"
-    )
+    if np.isnan(value) or not (own and np.isfinite(own)):
+        return "-"
+    return f"x {value / own:.3g}"
 
 
 def _headed(effect: Effect) -> str:
@@ -233,6 +243,7 @@ class Budget:
     def tables(self) -> Iterator[Table | str]:
         """One table of what moves something, then sentences of each result."""
         yield self._table()
+        yield "below the first row: times the value of the case as it is"
         still = [self.rows[n].label for n in self.inputs if not self._moves(n)]
         if still:
             yield f"moved by less than {100.0 * FELT:g} % of all: {'; '.join(still)}"
@@ -253,17 +264,18 @@ class Budget:
         """Rows of each input, by its name and the values that it takes; of those that
         move something by so much, what moves most first.
         """
+        changes = [_without_record(row.change) for row in self.rows]
         found: dict[tuple[str, str], list[int]] = {}
         for row in self.inputs:
-            stem, _ = _stem(self.rows[row].change)
+            stem, _ = _stem(changes[row])
             found.setdefault((self.rows[row].cause, stem), []).append(row)
         named = {}
         for (cause, stem), rows in found.items():
             if any(self._moves(row, least) for row in rows):
-                rows.sort(key=lambda row: _stem(self.rows[row].change)[1])
-                changes = dict.fromkeys(self.rows[row].change for row in rows)
-                values = [each.removeprefix(stem) for each in changes]
-                change = f"{stem}{BETWEEN.join(values)}"
+                rows.sort(key=lambda row: _stem(changes[row])[1])
+                each = dict.fromkeys(changes[row] for row in rows)
+                values = BETWEEN.join(change.removeprefix(stem) for change in each)
+                change = f"{stem}{values}"
                 named[f"{cause}: {change}" if change else cause] = rows
         return named
 
@@ -363,18 +375,19 @@ class Budget:
         panels[0].invert_yaxis()
 
     def _draw(self, axes: style.Axes, effect: Effect, rows: Sequence[list[int]]) -> None:
-        """Ratios of one result to that of the case, cut where they leave the panel; of an
-        input that takes several values the longest bar is below the others.
+        """Ratios of one result to that of the case; what overturns ends at the panel's
+        end, with a mark. Of an input that takes several values the longest bar is below
+        the others.
         """
         own = effect.values[0] or 1.0
         ratio = effect.values / own
         others = [n for n, row in enumerate(self.rows) if row.cause == RECORDS]
-        finite = ratio[np.isfinite(ratio)]
-        far = 1.1 * float(np.quantile(finite, 0.95)) if finite.size else 2.0
         pairs = [(place, row) for place, of in enumerate(rows) for row in of]
         pairs.sort(key=lambda pair: -effect.move(pair[1]))
         places, every = np.array(pairs, dtype=int).reshape(-1, 2).T
-        bars = np.clip(ratio[every], -far, far)
+        bound = effect.limit.limit / own if effect.limit else np.nan
+        far = _end_of_axis(ratio[every], bound)
+        bars = np.clip(np.nan_to_num(ratio[every], nan=1.0), -far, far)
         colours = np.array([style.BLUE, style.ORANGE, style.RED])
         kinds = np.where(effect.turned, 2, effect.moved)[every]
         look: dict[str, Any] = {
@@ -384,9 +397,27 @@ class Budget:
             "linewidth": 0.3,
         }
         axes.barh(places, bars - 1.0, color=colours[kinds], **look)
+        at_ends: dict[str, Any] = {"color": style.BLACK, "ms": 4.0}
+        at_ends["ls"] = ""
+        beyond = ~np.isfinite(ratio[every]) & ~np.isnan(ratio[every])
+        axes.plot(bars[beyond], places[beyond], ">", **at_ends)
         points = np.clip(ratio[others], -far, far)
         axes.plot(points, [-1.0] * len(points), ".", color=style.GREY, alpha=0.6)
+        if (np.abs(ratio[others]) > far).any():
+            axes.plot([far], [-1.0], ">", **at_ends)
         axes.axvline(1.0, color=style.BLACK, lw=0.8)
-        if effect.limit:
-            bound = min(effect.limit.limit / own, far)
+        if abs(bound) <= far:
             axes.axvline(bound, color=style.RED, ls="--", lw=0.9)
+        elif effect.limit:
+            axes.set_title(f"limit at {bound:.3g}", fontsize=7, color=style.RED)
+
+
+FARTHEST_LIMIT = 2.0
+"""Times the longest bar, up to which the limit is drawn; else it is told."""
+
+
+def _end_of_axis(ratios: Array, bound: float) -> float:
+    """Size up to which a panel goes: all bars of what stands, and the limit near them."""
+    finite = np.abs(ratios[np.isfinite(ratios)])
+    far = 1.1 * max(1.0, float(finite.max(initial=1.0)))
+    return max(far, 1.05 * abs(bound)) if abs(bound) <= FARTHEST_LIMIT * far else far
