@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -133,6 +134,9 @@ def modes_figure(result: ModalResult, title: str, figure: style.Figure) -> None:
     style.legend_below(figure, [panels[vibrations]])
 
 
+DOTS: dict[str, Any] = {"marker": "o", "ms": 2.5}
+
+
 def draw_mode(axes: style.Axes, result: ModalResult, state: str, mode: int) -> None:
     """A mode, counted from 1, or 0 for the podium's own, `rolling` or `rocking`."""
     style.require("phases", state, result.uplifted)
@@ -145,26 +149,13 @@ def draw_mode(axes: style.Axes, result: ModalResult, state: str, mode: int) -> N
         full = np.concatenate([[0.0, 0.0], result.fixed_base.shapes[:, mode - 1]])
         if result.full_contact is not None:  # in which the cap beam moves as well
             full = np.concatenate([[0.0], result.full_contact.shapes[:, mode - 1]])
-        axes.plot(
-            full,
-            levels,
-            color=style.BLACK,
-            ls="--",
-            marker="o",
-            ms=2.5,
-            label="full contact" if lifts else "fixed base",
-        )
-    axes.plot(
-        [0.0, *shape],
-        levels,
-        color=style.BLACK,
-        marker="o",
-        ms=2.5,
-        label="uplifted" if lifts else "on bearings",
-    )
+        name = "full contact" if lifts else "fixed base"
+        axes.plot(full, levels, color=style.BLACK, ls="--", label=name, **DOTS)
+    name = "uplifted" if lifts else "on bearings"
+    axes.plot([0.0, *shape], levels, color=style.BLACK, label=name, **DOTS)
     if len(shape) > 1:
         elastic = [0.0, *(shape[1:] - shape[0])]
-        axes.plot(elastic, levels[1:], color=style.RED, marker="o", ms=2.5, label=ELASTIC)
+        axes.plot(elastic, levels[1:], color=style.RED, label=ELASTIC, **DOTS)
     axes.axvline(0.0, color=style.GREY, lw=0.5)
     axes.set(
         xlabel="shape [-]",
@@ -246,13 +237,8 @@ def draw_force(axes: style.Axes, result: PushoverResult) -> None:
     if returns:
         axes.axhline(0.0, color=style.GREY, lw=0.6)
     if F[0] > 0.0:
-        axes.plot(
-            [0.0, 0.0],
-            [0.0, F[0]],
-            color=style.BLACK,
-            lw=2.0,
-            label="full contact" if lifts else "held upright",
-        )
+        name = "full contact" if lifts else "held upright"
+        axes.plot([0.0, 0.0], [0.0, F[0]], color=style.BLACK, lw=2.0, label=name)
     for inside, colour, name in _phases(result):
         axes.plot(u[inside], F[inside], color=colour, lw=2.0, label=name)
         if returns:

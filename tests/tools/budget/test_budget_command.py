@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import shlex
 from itertools import pairwise
 
@@ -87,10 +88,7 @@ def test_one_table_sorted_by_what_moves_most(workplace, rps):
     last = next(n for n, line in enumerate(lines) if line.startswith("records: "))
     sizes = []
     for line in lines[first + 1 : last]:
-        words = line.replace("EXCEEDED", "").split()
-        cells = [cell for cell in words if cell not in ("met", "x")]
-        numbers = [c for c in cells[-2:] if c.replace(".", "").replace("-", "").isdigit()]
-        if len(numbers) == 2 and len(line) > 60:
+        if numbers := re.findall(r"\bx (-?[\d.]+)", line):
             over = "overturned" in line
             sizes.append(9e9 if over else max(abs(float(n) - 1.0) for n in numbers))
     assert len(sizes) > 3
