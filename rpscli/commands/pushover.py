@@ -93,7 +93,7 @@ def _tables(result: PushoverResult, title: str) -> Iterator[Part]:
     yield Table.listing([
         *([] if rolls else [scalars["uplift_force"]]),
         ("stiffness in full contact" if result.structure.bed else label, stiffness),
-        ("largest force", measured(float(result.curve.force.max()), "N")),
+        *_largest_force(result),
         scalars["critical_rotation"],
         scalars["critical_displacement"],
         ("lift at the critical rotation", measured(float(result.curve.lift[-1]), "m")),
@@ -109,6 +109,17 @@ def _tables(result: PushoverResult, title: str) -> Iterator[Part]:
         table = Table.of_texts(heads, capacity)
         yield table.without(["roof at uplift m"] * rolls)
     yield from _yielding_tables(result)
+
+
+def _largest_force(result: PushoverResult) -> Iterator[tuple[str, str]]:
+    """The largest force that holds the cap beam, and what of it devices take."""
+    most = int(result.curve.force.argmax())
+    force = float(result.curve.force[most])
+    bare = float(result.structure.path(result.curve.rotation)[0][most])
+    at = measured(float(result.curve.displacement[most]), "m")
+    yield "largest force at the cap beam", f"{measured(force, 'N')} at {at}"
+    if result.structure.devices:
+        yield "  of it by devices", measured(force - bare, "N")
 
 
 def _yielding_tables(result: PushoverResult) -> Iterator[Part]:
