@@ -16,6 +16,7 @@ from rpscli.commands.shell.options import completing, terminal_options
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError, hint
 from rpscli.registry import Registry, summary_of
+from rpscli.report.captions import CAPTIONS
 from rpscli.report.files import heading
 from rpscli.report.table import Heading, Part, Table
 
@@ -49,7 +50,7 @@ class ExplainEntry(NamedTuple):
     parts: tuple[Part, ...] = ()
 
 
-KINDS = ("keys", "results", "words", "reports", "options", "plugins")
+KINDS = ("keys", "results", "words", "reports", "options", "figures", "plugins")
 
 
 def _known() -> list[str]:
@@ -59,7 +60,7 @@ def _known() -> list[str]:
     keys = [key.key for key in _formats()]
     names = [name for entry, _ in glossary() for name in _names(entry)]
     ends = [key.rsplit(".", 1)[-1] for key in keys]
-    return list(dict.fromkeys([*keys, *ends, *EVERY, *REPORTS, *names]))
+    return list(dict.fromkeys([*keys, *ends, *EVERY, *REPORTS, *FIGURES, *names]))
 
 
 @click.command("explain")
@@ -74,7 +75,7 @@ def command(words: tuple[str, ...], terminal: Terminal) -> None:
     everything that has a meaning is listed. `plugins` lists what other packages add. `rps
     doctor` says where the guide is.
     """
-    word = " ".join(words)
+    word = re.sub(r"\.\d+(?=\.|$)", "", " ".join(words))  # podium.devices.0.force
     if not word:
         terminal.result(*_everything())
         return
@@ -89,8 +90,10 @@ def command(words: tuple[str, ...], terminal: Terminal) -> None:
     named = [
         q for q in EVERY.values() if word == q.name or (q.label in labels and not meant)
     ]
-    keys = _keys(word, texts=not report)
-    entries = [*report, *keys, *map(_result, named), *meant]
+    figures = [_figure(word)] if word.removesuffix(".png") in FIGURES else []
+    exact = [*report, *map(_result, named), *figures]
+    keys = _keys(word, texts=not exact)
+    entries = [*report, *keys, *map(_result, named), *figures, *meant]
     offers = [] if entries else list(_offers(word))
     if not report:
         alone = not (entries or offers)
@@ -168,6 +171,7 @@ def _everything() -> tuple[dict[str, Any], list[Part]]:
         ),
         "results": EVERY,
         "reports of studies": REPORTS,
+        "figures": FIGURES,
         "words": [name for name, _ in glossary()],
     }
     said = {kind: sorted(names, key=str.lower) for kind, names in lists.items()}
@@ -175,6 +179,16 @@ def _everything() -> tuple[dict[str, Any], list[Part]]:
     for kind, names in said.items():
         parts += [Heading(kind), ", ".join(names)]
     return {**heading("explain"), "word": None, "names": said}, parts
+
+
+FIGURES = {name: text for name, text in CAPTIONS.items() if len(name) > 1}
+"""Figures by the names of their files."""
+
+
+def _figure(word: str) -> ExplainEntry:
+    name = word.removesuffix(".png")
+    said = {"figure": name, "shows": FIGURES[name]}
+    return ExplainEntry("figures", said, (Heading(f"{name}, a figure"), FIGURES[name]))
 
 
 def _result(quantity: ResultQuantity) -> ExplainEntry:

@@ -304,7 +304,9 @@ def _several(
     names, motions = zip(*components, strict=True)
     label = histories[worst].label
     plan = parts.plan_picture(result, label, out.look)
-    all_of = f"{len(motions)} records"
+    all_of = f"{len(histories)} records"
+    if len(motions) > len(histories):
+        all_of += ", x and y"
     largest = "Response to the record with the largest rotation of the columns, "
     figures = ("orbit", "rotation", "storey_shears", "twist")
     scaled = "as they were scaled"

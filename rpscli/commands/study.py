@@ -215,8 +215,11 @@ class Swept(NamedTuple):
         verdicts = list(self._verdicts())
         reports = list(self._reports())
         statistics = list(of_study.summary_tables(result.summary, asked(result.layout)))
-        for rows in FEWER:
-            yield [*of_study.cut(statistics, rows, ALL), *verdicts, *reports]
+        tables = sum(isinstance(part, Table) for part in statistics)
+        for count in dict.fromkeys((tables, *(n for n in (3, 2) if n < tables))):
+            some = of_study.first_tables(statistics, count, ALL)
+            for rows in FEWER:
+                yield [*of_study.cut(some, rows, ALL), *verdicts, *reports]
         elsewhere: list[Part] = [f"statistics are in statistics.csv{ALL}"]
         if result.summary is None:
             elsewhere = []

@@ -9,6 +9,7 @@ multiplied by the pair's PGV normalisation factor.
 from __future__ import annotations
 
 import importlib.util
+import re
 from fnmatch import fnmatchcase
 from functools import lru_cache
 from pathlib import Path
@@ -34,6 +35,8 @@ COMPONENTS = tuple(
 )
 """The 100 components, `farfield/1/a` to `nearfield_no_pulse/28/b`."""
 
+_RANGE = re.compile(r"\[(\d)-(\d\d+)\]")
+
 PAIRS = tuple(component[:-2] for component in COMPONENTS[::2])
 
 
@@ -41,6 +44,12 @@ def expand_set(of: Source) -> list[Source]:
     """The single sources that a pattern such as `farfield/*` stands for."""
     of.query("normalised")
     known = PAIRS if of.of_pair else COMPONENTS
+    if match := _RANGE.search(of.place):
+        first = of.at(of.place.replace(match[0], f"[{match[1]}-9]"))
+        raise RecordError(
+            f"{of}: {match[0]} stands for one of the signs in it, not for numbers up to"
+            f" {match[2]}; name {first} and the others apart"
+        )
     found = [of.at(place) for place in known if fnmatchcase(place, of.place)]
     if not found:
         raise unknown(of)

@@ -24,6 +24,7 @@ from rpscli.model.superstructure import Superstructure
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.records.measures import DAMPING, drawn_spectrum, intensity_measures
 from rpscli.report import derived, timehistory
+from rpscli.report.captions import CAPTIONS, NOT_OF_A_RESPONSE
 from rpscli.report.column_table import column_table
 from rpscli.report.figures import style
 from rpscli.report.figures.look import Look
@@ -99,8 +100,9 @@ def motions_section(
         words = 2 + bool(names)
         blocks.append(Table.of_texts((*heads, "5-95 % [s]"), rows, words=words))
         spectra = [drawn_spectrum(each) for each in motions[:MOST_SPECTRA]]
+        kind = "components" if names else "records"
         caption = (
-            f"Response spectra of {len(spectra)} records {which}, at"
+            f"Response spectra of {len(spectra)} {kind} {which}, at"
             f" {style.percent(DAMPING)} of critical damping, with their median."
         )
         blocks.append(
@@ -110,43 +112,6 @@ def motions_section(
         blocks.append(f"The table shows the first {MOST_ROWS} of {len(motions)} records.")
     return ReportSection("Ground motions", blocks)
 
-
-CAPTIONS = {
-    "s": "The structure at rest.",
-    "bearing": (
-        "A column at rest, where rolling ends and at the critical rotation, to one"
-        " scale; one of its ends enlarged; and the horizontal force at the cap beam"
-        " that holds it there. R runs from the middle of the column to the edge of the"
-        " flat part of its end; dots are contacts."
-    ),
-    "orbit": (
-        "From above: the path of the cap beam over the ground, and the moment of ground"
-        " and building about the contacts, beyond whose circle upright columns with a"
-        " flat part uplift; time in colour."
-    ),
-    "column": (
-        "The most loaded column when its moment is largest: forces at its ends, to a"
-        " scale of their own, and axial force, shear and moment along it."
-    ),
-    "rotation": (
-        "Ground acceleration, rotation of the columns with the phases of the motion,"
-        " and the events."
-    ),
-    "displacements": "Displacements relative to the ground against time.",
-    "moment_rotation": "Driving and restoring moment about the contact points against rotation.",
-    "energy": "Balance of the energy supplied by the ground.",
-    "storey_shears": "Largest storey shears on the bearings and on a fixed base.",
-    "storey_loops": (
-        "Shear of the springs of storeys that yield against their drift, and the lines"
-        " on which they yield."
-    ),
-    "devices": "Force against displacement of each device between ground and cap beam.",
-    "twist": (
-        "The slab from above: paths of the heads of its columns over the ground, enlarged"
-        " and drawn from their places, the column that moves most in red; below, the turn"
-        " about the vertical."
-    ),
-}
 
 DIGITS = 6
 THEORY = "THEORY.md"
@@ -379,7 +344,7 @@ def response_section(
     plan: Picture | None = None,
 ) -> ReportSection:
     """The tables of a history, all of its figures or some, and the plan of the columns."""
-    wanted = {*figures} or CAPTIONS.keys() - {"column"}
+    wanted = {*figures} or CAPTIONS.keys() - NOT_OF_A_RESPONSE
     drawn = [
         (CAPTIONS[stem], each) for stem, each in pictures(files).items() if stem in wanted
     ]

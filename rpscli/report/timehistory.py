@@ -89,7 +89,7 @@ def demand_tables(
         *_of_contacts(result, units),
         *_energy(result),
     ]
-    heads = ["", "on bearings", "normalised", f"{_elastic(result)}fixed base"]
+    heads = ["", "on bearings", "", f"{_elastic(result)}fixed base"]
     columns = len(heads) - (result.fixed_base is None)
     yield Table.of_texts(heads[:columns], [row[:columns] for row in rows])
     if result.structure.storeys:

@@ -7,6 +7,8 @@ import rpscli
 from rpscli.analyses.twist import twist_history
 from rpscli.case.case import parse_case
 from rpscli.errors import RpsError
+from rpscli.report.bundles import timehistory_files
+from rpscli.report.captions import CAPTIONS
 from rpscli.report.twist import columns_table, depends
 
 CASE = """\
@@ -162,6 +164,13 @@ def test_factors_go_to_the_columns_row_by_row():
     assert run.factors.tolist() == [1.02, 0.99, 1.01, 0.98]
     assert run.places.tolist() == [[-5, -5], [5, -5], [-5, 5], [5, 5]]
     np.testing.assert_allclose(run.columns["tan_a"], 0.15 * run.factors, rtol=1e-12)
+
+
+def test_every_figure_of_a_history_has_a_caption_for_pages(result):
+    files = [name for name, _ in timehistory_files(result, "title")]
+    figures = {name.removesuffix(".png") for name in files if name.endswith(".png")}
+    assert "twist" in figures
+    assert figures <= CAPTIONS.keys()
 
 
 def test_a_slab_on_spherical_ends_that_friction_holds_stays_tilted():

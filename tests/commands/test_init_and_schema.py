@@ -127,9 +127,15 @@ def test_what_a_word_means(rps, word, said):
 def test_without_a_word_everything_is_listed(rps, rps_json):
     shown = " ".join(rps("explain").stdout.split())
     names = rps_json("explain")["names"]
-    assert [*names] == ["sections of a case", "results", "reports of studies", "words"]
+    assert [*names] == [
+        "sections of a case",
+        "results",
+        "reports of studies",
+        "figures",
+        "words",
+    ]
     for kind, name in zip(
-        names, ("podium", "max_base_shear", "risk", "cap beam"), strict=True
+        names, ("podium", "max_base_shear", "risk", "orbit", "cap beam"), strict=True
     ):
         assert any(each.startswith(name) for each in names[kind])
         assert name in shown
@@ -305,3 +311,11 @@ def test_slips_of_units_are_answered_with_what_was_perhaps_meant(rps):
     assert "write contact_strength: 1100 MPa" in lost.stderr
     weak = rps(*words, f"podium.column={column % '1 MPa'}")
     assert "a larger radius or more columns lower it" in weak.stderr
+
+
+def test_figures_are_explained_and_indices_are_keys(rps):
+    assert "path of the cap beam" in rps("explain", "orbit").stdout
+    assert "path of the cap beam" in rps("explain", "orbit.png").stdout
+    text = rps("explain", "podium.devices.0.coefficient").stdout
+    assert text == rps("explain", "podium.devices.coefficient").stdout
+    assert rps("explain", "passes").stdout.startswith("passes, a result")

@@ -320,16 +320,32 @@ def note_of_directions(layout: StudyPoints) -> str:
     return direction_note(layout.pairs, layout.system(0).structure.planar_only)
 
 
+def first_tables(parts: Sequence[Part], count: int, others: str) -> list[Part]:
+    """The first tables with their remarks, and where the others are."""
+    tables = [part for part in parts if isinstance(part, Table)]
+    if count >= len(tables):
+        return [*parts]
+    away = tables[count:]
+    kept = [part for part in parts if not any(part is each for each in away)]
+    return [*kept, f"further demands, {len(away)} tables: statistics.csv{others}"]
+
+
+COMPARED = 4
+"""Rows of a table that are not cut: variants are there to be compared."""
+
+
 def cut(parts: Iterable[Part], rows: int = MOST_ROWS, others: str = "") -> Iterator[Part]:
     """The parts with so many rows of each table, but listings, and a
     remark on what is left out.
     """
     longest = 0
     for part in parts:
-        if isinstance(part, Table) and any(part.heads) and len(part) > rows:
+        most = max(rows, COMPARED)
+        if isinstance(part, Table) and any(part.heads) and len(part) > most:
             longest = max(longest, len(part))
-            yield part.first(rows)
+            yield part.first(most)
         else:
             yield part
     if longest:
-        yield f"{rows} of up to {longest} rows are shown; all are in the CSV files{others}"
+        most = max(rows, COMPARED)
+        yield f"{most} of up to {longest} rows are shown; all are in the CSV files{others}"
