@@ -26,7 +26,7 @@ HORIZONTAL = RecordDirection(vertical=False)
 _VERTICAL_WORDS = re.compile(
     r"up|ud|updn|updo|updown|upward\w*|dwn|down|downward\w*|vrt|vrtcl|vert"
     r"|verti[ck]\w*|vtcl"
-    r"|vertic\w*|haut|hoch|senkrecht|lotrecht|arriba|alto|[cz]enith?|hohe|gravity|dusey|dikey|dus|верт\w*"
+    r"|vertic\w*|haut|hoch|senkrecht|lotrecht|arriba|alto|[cz]enit(?:h|al)?|hohe|gravity|plumb|hautbas|pysty|상하|dusey|dikey|dus|верт\w*"
     r"|отвесн\w*"
     r"|上下|垂直|竖直|竖向|鉛直|铅直|수직|上|joge|jouge|enchoku|chui?zhi|shuxiang|shangxia"
     r"|katak\w*|κατακ\w*|pionow\w*|svisl\w*|vertikaln\w*|okomit\w*|verdikal|lodret"

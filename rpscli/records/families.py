@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from itertools import pairwise
+from itertools import combinations, pairwise
 from pathlib import Path, PurePath
+
+import numpy as np
 
 from rpscli.errors import RecordError
 from rpscli.records.directions import (
@@ -100,6 +102,8 @@ def require_two(motions: Mapping[Source, GroundMotion], folder: Path | None) -> 
     }  # fmt: skip
     for three in _threes(real, folder):
         told = [motions[of].recording for of in three]
+        if _of_one_direction(three, motions) or _are_multiples(three, motions):
+            continue
         if len({each.station for each in told if each.station}) > 1:
             continue
         events = {each.event or each.origin for each in told}
@@ -136,7 +140,8 @@ def _threes(
             if len(members) != _MANY or _have_names_of_their_own(members):
                 continue
             by_number = all(word.isdigit() for _, word in members)
-            if not (by_number and counted & dict(members).keys()):
+            series = by_number and counted & dict(members).keys()
+            if not series and _may_be_components(members):
                 yield [of for of, _ in members]
     yield from _thirds(motions)
 
@@ -170,6 +175,65 @@ def _thirds(motions: Mapping[Source, GroundMotion]) -> Iterator[list[Source]]:
 
 _LONGEST_WORD = 10
 """Letters of a word that may be a direction."""
+
+
+_LABEL = re.compile(r"[a-z]|(?:[a-z]{1,2}|comp|chan|channel)?0*[0-3]", re.IGNORECASE)
+_OF_SERIES = re.compile(
+    r"(?:eq|gm|art|rec|record|motion|run|seed|case|sim|test|wave|set|no|quake|th|sample|site"
+    r"|event|scenario|realization|suite|input|history|file|data|ground|earthquake|station)"
+    r"[-_ ]?$",
+    re.IGNORECASE,
+)
+
+
+def _may_be_components(members: Sequence[tuple[Source, str]]) -> bool:
+    """True of words that tell two directions at least, or are labels of components."""
+    words = [word for _, word in members]
+    if sum(direction_of(word) is not None for word in words) > 1:
+        return True
+    of, word = members[0]
+    stem = PurePath(of.place).stem
+    before, _, behind = stem.partition(word)
+    if direction_of(before) is not None or direction_of(behind.strip("-_. ")) is not None:
+        return False  # E1, E2, E3 and GM1_x, GM2_x, GM3_x
+    named = bool(
+        re.search(_OF_SERIES, re.sub(r".*[-_ .](?=[^-_ .]+[-_ ]?$)", "", before))
+    )
+    return not named and all(_LABEL.fullmatch(word) for word in words)
+
+
+def _of_one_direction(
+    three: Sequence[Source], motions: Mapping[Source, GroundMotion]
+) -> bool:
+    """True of files that all tell one horizontal direction: those of three stations."""
+    by_name = {
+        with_axes(direction_by_name(PurePath(of.place).name)).lower() for of in three
+    }
+    by_header = {motions[of].recording.direction.lower() for of in three}
+    return any(
+        len(told) == 1 and _is_level(next(iter(told))) for told in (by_name, by_header)
+    )
+
+
+def _is_level(word: str) -> bool:
+    way = direction_in(word) if word else None
+    return word == "horizontal" or (way is not None and not way.vertical)
+
+
+MULTIPLE = 0.9999
+"""Correlation of samples that are those of one motion times a factor."""
+
+
+def _are_multiples(
+    three: Sequence[Source], motions: Mapping[Source, GroundMotion]
+) -> bool:
+    """True of three motions of which two are one times a factor."""
+    for one, other in combinations((motions[of].acceleration for of in three), 2):
+        size = min(one.size, other.size)
+        a, b = one[:size], other[:size]
+        if abs(float(a @ b)) > MULTIPLE * float(np.linalg.norm(a) * np.linalg.norm(b)):
+            return True
+    return False
 
 
 def _nearly_as_long(

@@ -364,9 +364,9 @@ def _once(
 
 
 _BELOW_BY_NAME = re.compile(
-    r"bore-?hole|down-?hole|in-?hole|(?<![A-Za-z])(?:GL-?[1-9]|bottom|DH\d*|BH\d+|bedrock"
-    r"|pozz?o|forage|bohrloch|sondaj|kuyu)(?![A-Za-z])"
-    r"|(?<=[_ .-])-?\d+m(?![A-Za-z])|скважин",
+    r"bore-?hole|down-?hole|in-?hole|(?<![A-Za-z])(?:GL-?[1-9]|bottom|DH\d*|BH\d*|bedrock"
+    r"|pozz?o|forage|bohrloch|sondaj|kuyu|skv|well|subsurface|depth\d+m?)(?![A-Za-z])"
+    r"|(?<=[_ .-])-?\d+m(?![A-Za-z])|скважин|地中|井下",
     re.IGNORECASE,
 )
 """Words in names of files of instruments below the ground."""

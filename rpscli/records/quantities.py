@@ -38,7 +38,9 @@ TIME_UNITS = {
     **dict.fromkeys(("сек", "saniye", "segundos", "secondes", "secondi", "秒"), 1.0),
     **dict.fromkeys(("sekunde", "sekunden", "segundo", "seconde", "secondo"), 1.0),
     **dict.fromkeys(("ms", "msec", "msecs", "millisec", "millisecs", "мс"), 1e-3),
-    **dict.fromkeys(("millisecond", "milliseconds", "milisegundos", "mseg"), 1e-3),
+    **dict.fromkeys(
+        ("millisecond", "milliseconds", "milisegundos", "mseg", "millisecondi"), 1e-3
+    ),
     **dict.fromkeys(("us", "usec", "μs", "microsec", "microseconds", "мкс"), 1e-6),
 }
 """The one table of units of time, in small letters without accents [s]."""
@@ -55,7 +57,7 @@ UNIT_PATTERN = (
     rf"(?:[cm]?ms?|in|ft|[см]?м){_PER_SECOND_TWICE}"
     r"|(?:milli[- ]?|m)g(?![\w/])|%\s*(?:of\s+)?(?:g|gravity)(?![\w/])"
     r"|(?:10\s*\^\s*[-−]\s*3|1e-0?3)\s*\*?\s*g(?![\w/])|g\s*/\s*1000(?!\d)"
-    r"|gals?(?!\w)|гал(?!\w)|ガル|伽|gravity\b|g's(?!\w)"
+    r"|gals?(?!\w)|ms⁻²|cms⁻²|гал(?!\w)|ガル|伽|gravity\b|g's(?!\w)"
     r"|g(?![\w/])"
 )
 """A regular expression (ignoring case) for the spellings of

@@ -129,8 +129,10 @@ def _event_names(recording: Recording) -> set[str]:
     not independent.
     """
     if match := _NUMBERED.fullmatch(recording.event):
-        return {f"event {match[1].upper()} {match[2]}"}
-    if _IDENTIFIED.fullmatch(recording.event):
+        return {f"event {match[1].upper()} {int(match[2])}"}
+    if match := _IDENTIFIED.match(recording.event):
+        return {f"event {match[1].lower()}"}
+    if _MADE.fullmatch(recording.event):
         return {f"event {recording.event.lower()}"}
     words = {*words_of(recording.event)}
     if words and words <= NOT_OF_THE_MOTION and not days_of(recording.event):
@@ -147,7 +149,11 @@ def _event_names(recording: Recording) -> set[str]:
     return names | _by_words(recording)
 
 
-_IDENTIFIED = re.compile(r"\s*[A-Za-z]{0,4}\W?\d{4,}\w*\s*")
+_IDENTIFIED = re.compile(r"\s*([A-Za-z]{1,4}\d{3,}\w*|\d{4,6}[a-z]\w*)(?=\s|$)")
+_MADE = re.compile(
+    r"\s*(?:simulation|scenario|realisation|realization|event|case|seed|run|model)\W*\d+\s*",
+    re.IGNORECASE,
+)
 _NUMBERED = re.compile(r"\s*(EQID|RSN)\W*(\d+)\s*", re.IGNORECASE)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -19,7 +20,14 @@ from rpscli.records.quantities import (
     canonical_unit,
 )
 from rpscli.records.words import folded, look_alikes
-from rpscli.titled_table import Row, TitledTable, number_of, text_of, titled_table
+from rpscli.titled_table import (
+    Row,
+    Title,
+    TitledTable,
+    number_of,
+    text_of,
+    titled_table,
+)
 
 Array = NDArray[np.float64]
 
@@ -105,7 +113,8 @@ def _is_of_periods(unit: str) -> bool:
 
 _OTHERWISE = re.compile(
     r"vertical|velocity|displacement|normali[sz]|normier|\bscale|\bfactor|faktor"
-    r"|\btimes\b"
+    r"|\btimes\b|multiply|inelastic|\bpsv\b|duration|\bdamp\w*\W{0,3}(?!5(?:\.0*)? ?%)\d"
+    r"|(?<![\d.])(?!5(?:\.0*)? ?%)\d+(?:\.\d+)? ?%(?! ?in\b)"
     r"|(?!\b5(?:\.0*)? ?%)\b\d+(?:\.\d+)? ?% ?(?:of critical )?damp"
 )
 """Words of remarks that say that ordinates are others than they look."""
@@ -113,12 +122,13 @@ _OTHERWISE = re.compile(
 
 def _refuse_remarks(table: TitledTable, path: Path) -> None:
     """Refuse remarks above or among rows that bear on what they are."""
-    for line, text in table.remarks:
+    titled = [(table.line, title.name) for title in table.titles[:2]]
+    for line, text in (*titled, *table.remarks):
         if match := _OTHERWISE.search(folded(text)):
             raise RecordError(
-                f"{path}:{line}: the remark {beginning(text)} says {match[0]!r}: write"
+                f"{path}:{line}: {beginning(text)} says {match[0]!r}: write"
                 " the ordinates that are meant, horizontal pseudo-accelerations, with"
-                " ?damping= if it is not 5 %, and take the remark away"
+                " ?damping= if it is not 5 %, and take these words away"
             )
 
 
@@ -153,6 +163,13 @@ def _place_of_deviation(table: TitledTable) -> int:
     return 0
 
 
+def _with_unit(title: Title) -> Title:
+    """A title whose unit may stand behind `_`, as in `sa_g`."""
+    name, mark, unit = title.name.rpartition("_")
+    known = mark and not title.unit and (_is_of_periods(unit) or canonical_unit(unit))
+    return Title(name, unit) if known else title
+
+
 def _columns_of(path: Path, source: str) -> TitledTable:
     """The columns of a target, each understood by its title."""
     try:
@@ -160,7 +177,8 @@ def _columns_of(path: Path, source: str) -> TitledTable:
     except (OSError, UnicodeDecodeError) as error:
         raise RecordError(f"{source}: cannot be read: {error}; name a CSV file") from None
     table = titled_table(text, path, RecordError)
-    titles = table.titles
+    titles = tuple(map(_with_unit, table.titles))
+    table = replace(table, titles=titles)
     known = len(titles) > 1 and canonical_unit(titles[1].unit) is not None
     named = titles and _is_period(titles[0].name)
     of_periods = titles and _is_of_periods(titles[0].unit)

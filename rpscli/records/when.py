@@ -11,9 +11,11 @@ _MONTHS = {
     stem: number
     for number, stems in enumerate(
         (
-            "jan oca ene gen", "feb fev sub", "mar", "apr avr nis abr", "may mai maj mag",
-            "jun juin haz giu", "jul juil tem lug", "aug aou agu ago", "sep eyl set",
-            "oct okt eki ott", "nov kas", "dec dez ara dic",
+            "jan oca ene gen янв ιαν", "feb fev sub фев φεβ", "mar мар μαρ",
+            "apr avr nis abr апр απρ", "may mai maj mag мая май μαι",
+            "jun juin haz giu июн ιουν", "jul juil tem lug июл ιουλ",
+            "aug aou agu ago авг αυγ", "sep eyl set сен σεπ", "oct okt eki ott окт οκτ",
+            "nov kas ноя νοε", "dec dez ara dic дек δεκ",
         ),
         1,
     )
@@ -29,15 +31,17 @@ _ZONES = {
 }  # fmt: skip
 """Hours ahead of UTC."""
 
+_REVERSED = re.compile(r"\b(\d{1,2})-(\d{1,2})-((?:19|20)\d\d)\b")
 _ISO = re.compile(r"\b(\d{4})[-/.\s]\s?(\d{1,2})[-/.\s]\s?(\d{1,2})(?!\d)")
 _SOLID = re.compile(r"\b((?:19|20)\d\d)(\d\d)(\d\d)(?=\D|$)")
 _AMERICAN = re.compile(r"\b(\d{1,2})/(\d{1,2})/(\d{4}|\d{2})\b")
 _DOTTED = re.compile(r"\b(\d{1,2})\.(\d{1,2})\.(\d{4})\b")
-_NAMED = re.compile(r"\b([a-z]{3,9})\.?\s+(\d{1,2}),?\s+(\d{4})\b", re.IGNORECASE)
+_NAMED = re.compile(r"\b([^\W\d_]{3,11})\.?\s+(\d{1,2}),?\s+(\d{4})\b", re.IGNORECASE)
 _EUROPEAN = re.compile(
-    r"\b(\d{1,2})\.?[\s-]+([a-z]{3,9})\.?,?[\s-]+(\d{4})\b", re.IGNORECASE
+    r"\b(\d{1,2})\.?[\s-]+(?:de\s+)?([^\W\d_]{3,11})\.?,?[\s-]+(?:de\s+)?(\d{4})\b",
+    re.IGNORECASE,
 )
-_GREEN = re.compile(r"\b(\d{4})\s+([a-z]{3,9})\s+(\d{1,2})\b", re.IGNORECASE)
+_GREEN = re.compile(r"\b(\d{4})\s+([^\W\d_]{3,11})\s+(\d{1,2})\b", re.IGNORECASE)
 _ORDINAL = re.compile(r"\b((?:19|20)\d\d)[./-](\d{3})(?!\d)")
 _CLOCK = re.compile(
     r"(?:\b|T)(\d{1,2})(?:[:時]|h\s?)(\d{2})(?:(?:[:分]|m(?:in)?\s?)(\d{2}(?:[.,]\d+)?))?"
@@ -95,8 +99,8 @@ def _date(text: str) -> tuple[tuple[int, int, int], str] | None:
             at = datetime(year, 1, 1, tzinfo=UTC) + timedelta(days=number - 1)
             return (at.year, at.month, at.day), rest
     for pattern, order in (
-        (_ISO, "ymd"), (_AMERICAN, "mdy"), (_DOTTED, "dmy"), (_NAMED, "mdy"), (_EUROPEAN, "dmy"),
-        (_GREEN, "ymd"), (_SOLID, "ymd"),
+        (_ISO, "ymd"), (_AMERICAN, "mdy"), (_DOTTED, "dmy"), (_REVERSED, "dmy"),
+        (_NAMED, "mdy"), (_EUROPEAN, "dmy"), (_GREEN, "ymd"), (_SOLID, "ymd"),
     ):  # fmt: skip
         if match := pattern.search(folded(text)):
             parts = dict(zip(order, match.groups(), strict=True))

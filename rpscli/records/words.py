@@ -112,7 +112,8 @@ NOT_OF_THE_MOTION = vocabulary(
     " mittelwert media moyenne promedio ortalama baseline zero start begin end"
     " duration dauer"
     " duracion duree durata sure suresi длительность usable bandwidth nyquist checksum"
-    " crc"
+    " crc doi licence license commit revision title orcid grant copyright http https mo"
+    " firmware git table figure fig realization realisation jday doy z1 z2 snr ratio"
     " km az fc flo fhi rms std iso odak derinligi back backazimuth incidence ray sv velocity"
     " vel displacement disp rupture rvt seed"
 )
@@ -140,7 +141,8 @@ SAMPLING = vocabulary(
     " sps fs"
 )
 STEPS = vocabulary(
-    "dt delta step timestep paso pas passo adim adimi adimlari schritt zeitschritt"
+    "increment incremento inkrement spacing zeitinkrement tidssteg tijdstap"
+    " dt delta step timestep paso pas passo adim adimi adimlari schritt zeitschritt"
     " schrittweite интервал шаг 間隔 间隔 刻み krok korak intervalo intervalle intervall"
     " intervallo aralig araligi interval bu buchang kankaku"
 )
@@ -168,7 +170,8 @@ DIRECTIONS = vocabulary(
 """What is said of the direction of a component."""
 
 EARTHQUAKES = vocabulary(
-    "event evento evenement ereignis olay earthquake eq deprem depremi terremoto sismo"
+    "sisma gempa potres cutremur zemljotres"
+    " event evento evenement ereignis olay earthquake eq deprem depremi terremoto sismo"
     " erdbeben"
     " seisme землетрясение 地震 jishin dizhen σεισμος trzesienie zemetreseni"
 )
@@ -193,12 +196,12 @@ STRUCTURES = vocabulary(
     " copertura tetto interrato piano edificio ponte diga terrazzo"
     " cati bodrum bina kopru baraj kule zemin-kat"
     " крыша подвал этаж здание мост плотина"
-    " 屋上 地下室 地階 階 建物 橋 ダム 屋顶 楼 大坝 桥 층 옥상"
+    " damcrest bridgedeck toiture vault 屋上 地下室 地階 階 建物 橋 ダム 屋顶 楼 大坝 桥 층 옥상"
 )
 """Buildings, dams and bridges, and parts of them."""
 
 STOREYS = re.compile(
-    r"(?<![^\W_])(?:[1-9]\d?f|b\d{1,2}f?|rf|phf?|l(?:evel|vl)?[ _-]?[1-9]\d?"
+    r"(?<![^\W_])(?:[1-9]\d?f|b\d{1,2}f?|rf|phf?|l[1-9]\d|l(?:evel|vl)[ _-]?[1-9]\d?"
     r"|\d{1,2}\.?[ _-]?(?:og|ug|stock|etage|kat|piano|th|st|nd|rd)"
     r"|(?:floor|storey|story|level|kat|etage|piso|piano)[ _-]?-?\d{1,2}"
     r"|zemin[ _-]kat|sous[ _-]sol|eg|\d{1,2}[ _-]?(?:storey|story|floor)s?)(?![^\W_])"
@@ -206,6 +209,8 @@ STOREYS = re.compile(
 """A storey of a building by its number, folded."""
 
 
+_SITES = vocabulary("dam bridge tower building presa ponte puente pont diga baraj kopru")
+"""Words that names of sites end with."""
 _NAMES_OF_STREETS = frozenset(
     ("road", "rd", "street", "school", "park", "avenue", "lane")
 )
@@ -242,7 +247,7 @@ def stands_in_a_structure(name: str) -> bool:
     [True, True, False, False]
     """
     plain = folded(name)
-    inside = any(word in STRUCTURES for word in words_of(name)[1:])
+    inside = any(word in STRUCTURES - _SITES for word in words_of(name)[1:])
     return inside or re.search(rf"(?<=[^a-z0-9]){STOREYS.pattern}", plain) is not None
 
 
@@ -283,14 +288,16 @@ OTHER_QUANTITIES = vocabulary(
     " spostamento deslocamento yerdegistirme degistirme перемещение смещение"
     " przemieszczenie"
     " 変位 变位 位移 jerk strain dehnung deformacion counts cuentas coups zahlimpulse"
-    " digits volt volts mv"
+    " digits volt volts mv speed hastighet brzina kecepatan viteza nopeus سرعت 속도"
+    " ความเร็ว"
+    " pomak deplasare μετατοπιση pressure rotation gyro angular pore"
 )
 """Quantities that are no acceleration, and readings of instruments."""
 BESIDE_QUANTITIES = vocabulary(
     "type data signal quantity quantite grandezza magnitud kind channel of the du de der"
     " yer in unit units unidad unidades einheit birim unita единица единицы soil sol"
     " suelo"
-    " ground boden zemin kaydi kayit record recording zapis запись s sec с сек"
+    " rate digital bit ground boden zemin kaydi kayit record recording zapis запись s sec с сек"
 )
 """Words beside them that say nothing else."""
 

@@ -19,6 +19,11 @@ VALUES = 0.2 * np.sin(2.0 * np.pi * TIMES) * np.sin(np.pi * TIMES) ** 2 / 0.6
 PEAK = float(f"{np.abs(VALUES).max():.6f}")
 
 
+def power(exponent):
+    """Motions that differ: powers with the sign of the values."""
+    return np.sign(VALUES) * np.abs(VALUES) ** exponent
+
+
 def series(*heads, values=VALUES):
     return "\n".join([*heads, *(f"{x:.6f}" for x in values)]) + "\n"
 
@@ -174,7 +179,7 @@ def test_other_values_are_no_directions(line, tmp_path):
 )  # fmt: skip
 def test_three_of_one_length_are_asked_for(words, tmp_path):
     texts = {
-        f"STA_{word}": series("dt: 0.005", "units: g", values=VALUES ** (k + 1))
+        f"STA_{word}": series("dt: 0.005", "units: g", values=power(k + 1))
         for k, word in enumerate(words)
     }
     with pytest.raises(
@@ -190,7 +195,7 @@ def test_three_of_one_length_are_asked_for(words, tmp_path):
 )  # fmt: skip
 def test_the_vertical_of_three_by_its_word(words, tmp_path):
     texts = {
-        f"STA_{word}": series("dt: 0.005", "units: g", values=VALUES ** (k + 1))
+        f"STA_{word}": series("dt: 0.005", "units: g", values=power(k + 1))
         for k, word in enumerate(words)
     }
     found, notes = folder(tmp_path, **texts)
@@ -200,14 +205,12 @@ def test_the_vertical_of_three_by_its_word(words, tmp_path):
 
 def test_three_of_three_stations_or_lengths_are_no_components(tmp_path):
     texts = {
-        f"r{k}": series(
-            f"station: S{k}", "dt: 0.005", "units: g", values=VALUES ** (k + 1)
-        )
+        f"r{k}": series(f"station: S{k}", "dt: 0.005", "units: g", values=power(k + 1))
         for k in range(3)
     }
     assert len(folder(tmp_path, **texts)[0]) == 3
     for k in range(3):
-        values = VALUES[: 150 + 10 * k] ** (k + 1)
+        values = power(k + 1)[: 150 + 10 * k]
         (tmp_path / f"r{k}.txt").write_text(
             series("dt: 0.005", "units: g", values=values)
         )
@@ -226,7 +229,7 @@ def test_names_of_their_own_and_numbers_of_a_series_are_no_components(
     names, sizes, tmp_path
 ):
     texts = {
-        name: series("dt: 0.005", "units: g", values=VALUES[:size] ** (k + 1))
+        name: series("dt: 0.005", "units: g", values=power(k + 1)[:size])
         for k, (name, size) in enumerate(zip(names, sizes, strict=True))
     }
     assert len(folder(tmp_path, **texts)[0]) == len(names)
@@ -234,7 +237,7 @@ def test_names_of_their_own_and_numbers_of_a_series_are_no_components(
 
 @pytest.mark.parametrize("heads", ["HL1,HL2,HL3", "p,q,a", "H1,H2,third", "NS,EW,aux"])
 def test_a_table_of_three_is_asked_for(heads, tmp_path):
-    text = table(f"dt: 0.005\nunits: g\n{heads}", VALUES, VALUES**2, VALUES**3)
+    text = table(f"dt: 0.005\nunits: g\n{heads}", VALUES, power(2), power(3))
     with pytest.raises(RecordError, match=r"do not tell their directions|\?columns="):
         folder(tmp_path, t=text)
     motion = load_record(

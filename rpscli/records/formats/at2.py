@@ -199,7 +199,8 @@ def _stated(
             steps += statements("DT", _STEP_GIVEN, [(index, line)])
     heads = [*enumerate(text.heads[:start])]
     text.refuse_multiples(heads, _UNITS.pattern)
-    unit = text.unit(_units(heads))
+    plain = replace(_unread(text, start), loose=True)
+    unit = text.unit(_units(heads) or plain.units())
     text.agreed(counts, text.count)
     text.agreed(text.understood_steps(steps), text.step)
     # 1/256 s is printed as .0039 by PEER: a whole rate that prints the same, but is not

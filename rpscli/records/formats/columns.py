@@ -63,6 +63,7 @@ from rpscli.records.quantities import (
     numbers_in,
     numerals_in,
 )
+from rpscli.records.words import NO_SERIES, speaks_of
 
 _STEP = (
     r"(?<![?&])\b(?:dt|delta[\s_]*t?|Δt|(?:time|sampling)[\s_]*(?:step|interval|period)"
@@ -245,11 +246,13 @@ def _titles_behind_a_key(table: Table, width: int) -> list[ColumnTitle]:
 
 
 def _cells(line: str, separator: str) -> list[str]:
-    """The cells of a line of titles; none where one is empty, but for one at the end."""
+    """The cells of a line of titles; none where one is empty, but for one at the end, and
+    that of an index at the beginning.
+    """
     cells = [plain_line(cell).strip() for cell in re.split(separator, line.strip())]
     if len(cells) > 1 and not cells[-1]:  # as spreadsheets end their lines
         cells.pop()
-    return cells if all(cells) else []
+    return cells if all(cells[1:]) and (cells[0] or len(cells) > 2) else []
 
 
 def _are_titles(titles: list[ColumnTitle], *, above: bool, apart: bool) -> bool:
@@ -310,6 +313,14 @@ def _columns(text: RecordText, table: Table, titles: list[ColumnTitle]) -> Groun
     return _motion(text, table, stated, values[:, place], read, titles)
 
 
+MANY = 50
+"""Values of a motion, of which some are negative."""
+
+
+AT_REST = 0.05
+"""Of the peak."""
+
+
 class _Read(NamedTuple):
     """How a motion was read: its form, words of it, and doubts."""
 
@@ -327,6 +338,13 @@ def _motion(
     titles: list[ColumnTitle],
 ) -> GroundMotion:
     """The motion of values, held against all that the header says."""
+    at_rest = abs(values[0]) <= AT_REST * np.abs(values).max()  # as a pulse begins
+    positive = values.size >= MANY and values.min() >= 0.0 and not at_rest
+    if positive and text.multiple is None:
+        raise text.fault(
+            "no value is negative, as in a spectrum or another curve; if these are"
+            f" accelerations, say what a value is: ?units=1 {stated.unit or 'g'}"
+        )
     motion = text.motion(stated, values, read.form, read.words, *read.doubts)
     unit, factor = text.agreed_factor(stated.unit)
     facts = Facts(values, unit, factor, motion.dt, table.values.size)
@@ -479,7 +497,8 @@ def _stated(text: RecordText, table: Table, title: ColumnTitle | None) -> Stated
     if text.dt is None:
         refuse_other_steps(text, steps, lines)
     steps = steps if text.dt is None or not text.dt_counts else []
-    peak = next(iter(statements("peak", PEAK_PATTERN, lines)), None)
+    told = [each for each in lines if not speaks_of(each[1], NO_SERIES)]
+    peak = next(iter(statements("peak", PEAK_PATTERN, told)), None)
     if title and title.unit and (canonical_unit(title.unit) or not title.remarks):
         units.append(Statement(f"the title {title.name}", title.unit, title.line))
     recording = recording_of(line for _, line in lines)

@@ -32,6 +32,7 @@ from rpscli.records.words import (
     DIRECTIONS,
     FACTORS,
     LIMITS,
+    NO_SERIES,
     NOT_OF_THE_MOTION,
     OTHER_QUANTITIES,
     PEAKS,
@@ -72,7 +73,7 @@ _ALONE = re.compile(rf"[\s#x×*]*({_NUMBER})()\s*", re.IGNORECASE)
 _WIDTH = 240
 """Letters of a line that state something."""
 _IN_CELLS = re.compile(
-    rf"^([^\W\d][^,;:=]*)[,;\t]\s*({_NUMBER}(?:\s*{_UNIT})?|{_UNIT})\s*[,;]*$",
+    rf"^([^\W\d](?:[^,;:=]*[^,;:=\d])?)[,;\t]\s*({_NUMBER}(?:\s*{_UNIT})?|{_UNIT})\s*[,;]*$",
     re.IGNORECASE,
 )
 """A key and its value in two cells."""
@@ -80,7 +81,7 @@ _PART = re.compile(
     r"[;|\t]|,(?=\s*[^\W\d][^:=,]{0,60}[:=])|\s{2,}(?=[^\W\d][^:=]{0,60}[:=])"
 )
 _TIMES = re.compile(
-    r"\d{4}年\s?\d{1,2}月\s?\d{1,2}日|\d{1,2}時\s?\d{2}分(?:\s?\d{2}(?:\.\d+)?秒)?"
+    r"\d{4}年(?:\s?\d{1,2}月\s?\d{1,2}日)?|\d{1,2}時\s?\d{2}分(?:\s?\d{2}(?:\.\d+)?秒)?"
     r"|\b\d{1,2}h\s?\d{2}m(?:in)?(?:\s?\d{2}s)?"
     r"|\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}(?:T(?=\d))?"
     r"|\d{1,2}:\d{2}(?!\d)(?::\d{2}(?:\.\d*)?)?Z?"
@@ -103,11 +104,13 @@ _SCALED = re.compile(
     r"|\d/\d+ (?:amplitude|scale|model)|times (?:two|three|four|five|ten)"
     r"|reduced (?:by|to)|\d+ ?% (?:level|scale|amplitude)|at \d+ ?%|dimensionless"
     r"|log10|squared|absolute values|derivative|normiran\w*|mise a l.echelle|a l.echelle"
+    r"|x ?10+|\d(?:\.\d+)? ?x [a-z]+|absolute value|rectified|\ba\^2|verdubbeld"
+    r"|peak-normali[sz]ed|sensitivity|length scale|time scale|prototype|compressed time"
     r"|percent(?:age)?|per cent|porcentaje|percentuale|prozent|pourcent\w*|promille"
     r"|per ?mil(?:le)?|hundredths?|thousandths?|tenths?"
     r"|divided?|dividid\w+|divis[oi]|multipli\w+|moltiplicat\w+|integrated|integriert"
     r"|integrad\w+|integrat[oi]|half|halved|doubled|twice|\d\s*times|x\s*\d|\*\s*\d)\b"
-    r"|^\W*[x×*]\s*\d|規格化|正規化|正规化|归一化|放大|缩小|‰|1/1000"
+    r"|\btimes \d|\blevel \d+ ?%|^\W*[x×*]\s*\d|規格化|正規化|正规化|归一化|放大|缩小|‰|1/1000"
     r"|\bin \w+, kilo\b"
 )
 """Words of sentences that say that values are others than they look."""
@@ -119,7 +122,10 @@ _RAW = re.compile(
 )
 
 
-_LENGTHS = ("km", "mi", "miles", "kilometers")
+_LENGTHS = vocabulary(
+    "km mi miles kilometers m ft hz khz nm dyn db deg bit bits % ° yr years j mpa kpa °c"
+)
+"""Units of other things than a motion over time."""
 OF_SOMETHING_ELSE = NOT_OF_THE_MOTION | LIMITS | DIRECTIONS | PLACES | STRUCTURES
 """Keys whose numbers do not bear on the values."""
 
@@ -134,6 +140,7 @@ class Said(NamedTuple):
     behind: str
     line: int
     words: str
+    keyed: bool = True  # by : or =
 
     @property
     def number(self) -> float:
@@ -195,27 +202,25 @@ class HeaderLines:
     def numbers(self) -> Iterator[Said]:
         """Numbers that the lines state, with their keys."""
         for index, part in self.parts:
-            found = [*_KEYED.finditer(part)]
-            if not found and self.loose and not re.search(r"[:=]\s*\S", part):
-                whole = _AT_THE_END.fullmatch(part)
-                if whole and not _YEAR.fullmatch(whole[2]) and not _TITLED.match(part):
-                    found = [whole]
-                elif (alone := _ALONE.fullmatch(part)) and not _YEAR.fullmatch(alone[1]):
-                    yield Said("", alone[1], "", index, part)
-            for match in found:
+            keyed = [*_KEYED.finditer(part)]
+            if not keyed and self.loose and not re.search(r"[:=]\s*\S", part):
+                yield from _loose_number(index, part)
+            for match in keyed:
                 if canonical_unit(match[1]) and canonical_unit(match[3] or "-"):
                     continue  # 1 g = 9.81 m/s2
                 yield Said(match[1], match[2], match[3] or "", index, part[:60])
 
     def units(self) -> list[Statement]:
         """Units of acceleration that stand as values, whatever their keys are."""
-        found = []
+        found: list[Statement] = []
         for index, part in self.parts:
             key, mark, value = part.rpartition(":")
             if not mark:
                 key, mark, value = part.rpartition("=")
             bare = re.search(r"\d", _IN_BRACKETS.sub("", value)) is None
-            whole = _WHOLE_UNIT.fullmatch(value.strip())
+            if not bare and self.loose:
+                found += _units_beside_numbers(value, index)
+            whole = _WHOLE_UNIT.fullmatch(value.strip(" ,;"))
             inside = _UNIT_INSIDE.search(value) if bare and not whole else None
             if bare and self.loose:
                 inside = inside or _UNIT_AT_THE_END.search(value)
@@ -230,16 +235,61 @@ class HeaderLines:
 
     def steps(self) -> list[Statement]:
         """Steps and rates of sampling in other words than those of a reader [s]."""
-        return [
+        found = [
             Statement(said.key.strip(), f"{step:.15g}", said.line)
             for said in self.numbers
             if (step := _step_of(said)) is not None
         ]
+        return found or [*self._steps_in_clauses()]
+
+    def _steps_in_clauses(self) -> Iterator[Statement]:
+        """Steps and rates between commas, as in `values in gal, step 0.01 s`."""
+        for index, part in self.parts if self.loose else ():
+            clauses = _CLAUSE.split(part)
+            for clause in clauses if len(clauses) > 1 else ():
+                for said in _loose_number(index, clause.strip(" .,;")):
+                    if (step := _step_of(said)) is not None:
+                        yield Statement(said.key.strip(), f"{step:.15g}", index)
+                if match := _RATE_ALONE.fullmatch(clause.strip(" .,;")):
+                    rate = to_float(match[1])
+                    yield Statement("the header", f"{1.0 / rate:.15g}", index)
 
 
 _LONGEST = 0.5
 """Of a step [s]: what is longer is another time."""
 _PER_SAMPLE = re.compile(r"m?s/(?:sample|point|scan)")
+
+
+def _loose_number(index: int, part: str) -> Iterator[Said]:
+    """A number at the end of words, or by itself, that is no year."""
+    match = _AT_THE_END.fullmatch(part)
+    if match and not _TITLED.match(part):
+        key, numeral, behind = match[1], match[2], match[3] or ""
+        if not _YEAR.fullmatch(numeral) or speaks_of(key, COUNTED):
+            yield Said(key, numeral, behind, index, part[:60], keyed=False)
+            return
+    alone = _ALONE.fullmatch(part)
+    if alone and not _YEAR.fullmatch(alone[1]):
+        yield Said("", alone[1], "", index, part)
+
+
+_RATE_ALONE = re.compile(rf"({NUMBER_PATTERN})\s*(?:hz|sps)", re.IGNORECASE)
+_CLAUSE = re.compile(r"[,;]\s+|\.\s+|,$|;$")
+_UNIT_IN_CLAUSE = re.compile(
+    rf"(?:\b(?:in|en|auf|w|v|в|i)\s+|[\[(]\s*)({_UNIT})\s*[\])]?$|^({_UNIT})$",
+    re.IGNORECASE,
+)
+
+
+def _units_beside_numbers(line: str, index: int) -> Iterator[Statement]:
+    """Units in clauses of a line without numbers, as in `step 0.01 s, values in gal`."""
+    for clause in _CLAUSE.split(line):
+        bare = clause.strip(" .,;")
+        match = _UNIT_IN_CLAUSE.search(bare)
+        if match and not re.search(r"\d", bare[: match.start()]):
+            unit = match[1] or match[2] or match[3]
+            if unit.lower() not in ("g", "gravity") or match[1]:
+                yield Statement("the header", unit, index)
 
 
 def _step_of(said: Said) -> float | None:
@@ -270,6 +320,8 @@ def doubts_of_header(header: HeaderLines, facts: Facts) -> list[str]:
     """
     doubts = []
     for said in header.numbers:
+        if speaks_of(header.text.heads[said.line], NO_SERIES):
+            continue  # of the spectrum that was the target
         if doubt := _contradiction(said, facts):
             doubts.append(doubt)
         elif header.text.multiple is None and not _is_understood(said, facts):
@@ -278,6 +330,8 @@ def doubts_of_header(header: HeaderLines, facts: Facts) -> list[str]:
         plain = folded(line[:_WIDTH])
         scaled = _SCALED.search(plain) or _is_factor_in_words(line)
         if header.text.multiple is None and scaled:
+            _refuse(header.text, line.strip()[:60], index, facts)
+        if header.text.multiple is None and _UNKNOWN_UNIT.search(plain):
             _refuse(header.text, line.strip()[:60], index, facts)
         if header.text.multiple is None and _names_other_quantity(line):
             raise header.text.fault(
@@ -291,6 +345,11 @@ def doubts_of_header(header: HeaderLines, facts: Facts) -> list[str]:
     return doubts
 
 
+_UNKNOWN_UNIT = re.compile(
+    r"\b(?:si|cgs|mks|metric|imperial|metrische?|metriques?) (?:units?|einheiten|unites?)\b"
+    r"|\bunidades del? si\b|\b(?:par|pro|per|al|por) (?:second|sekund|segundo)"
+)
+"""Words for units that do not say which."""
 _KEY_AND_WORDS = re.compile(r"\W*([^:=]{2,60}?)\s*[:=]\s*([^\W\d].*)")
 _NUMERALS = vocabulary(
     "two three four five ten zwei drei vier funf zehn deux trois dix due tre dieci dos"
@@ -308,6 +367,7 @@ def _is_factor_in_words(line: str) -> bool:
 
 def _names_other_quantity(line: str) -> bool:
     """True of a line, or of what stands behind its key, of words for another quantity."""
+    line = re.sub(r"[\[(].*?[\])]", " ", line)
     if re.search(r"\d", re.sub(r"\w*/\s?\w+\d?", "", line)):
         return False
     match = _KEY_AND_WORDS.fullmatch(line.strip())
@@ -324,7 +384,8 @@ _COUNT_FIRST = re.compile(
     r"(?<![\d.,])(\d{3,})\s*(?:values|points|samples|data|werte|valori)\b"
 )
 _LASTS = re.compile(
-    r"^\W*(?:total |record )?(?:duration|dauer|duracion|duree|durata|sure(?:si)?"
+    r"^\W*(?:total |record(?:ing)? ?)?(?:time(?= ?=)|t_end|ends? at"
+    r"|持续时间|duration|dauer|duracion|duree|durata|sure(?:si)?"
     r"|длительность|length|end time|time span)\b"
 )
 _FROM_TO = re.compile(r"^\s*0*(?:\.0*)?\s*(?:-|to|\.\.)\s*")
@@ -378,13 +439,21 @@ def _is_understood(said: Said, facts: Facts) -> bool:
     whole = said.unit is None and said.number == round(said.number)
     if _is_peak(said, facts) or (whole and said.number in (0.0, 1.0)):
         return True
+    if _CODE.search(said.words) or _TITLED_DATE.search(said.words):
+        return True
     counts = whole and not said.behind and speaks_of(said.key, COUNTED)
     if counts and not speaks_of(said.key, SERIALS):
         return said.number in (facts.values.size, facts.numbers)
     if speaks_of(said.key, FACTORS) and not speaks_of(said.key, LIMITS):
         return False
-    other = speaks_of(said.key, OF_SOMETHING_ELSE) or said.behind in _LENGTHS
+    other = speaks_of(said.key, OF_SOMETHING_ELSE) or said.behind.lower() in _LENGTHS
+    other = other or (whole and not said.keyed and not speaks_of(said.key, COUNTED))
     return other or _is_of_time(said, facts)
+
+
+_CODE = re.compile(r"[:=]\s*\d+[A-Z]+\d*\.?\d*(?=\s|$)")
+"""A code of digits and capital letters: a station, a form of numbers."""
+_TITLED_DATE = re.compile(r"[^\W\d]{3,9}\.? \d{1,2}(?:: | ,?)(?:18|19|20)\d\d\W*$")
 
 
 def _states_peak(said: Said) -> bool:

@@ -71,7 +71,7 @@ def refuse_other_quantities(
             )
     if text.columns is None:
         _refuse_spectra(text, table)
-    if ACCELERATION not in kinds:
+    if ACCELERATION not in kinds and text.multiple is None:
         _refuse_other_series(text, table)
     if titles and (ACCELERATION not in kinds or _lacks_time(titles, kinds)):
         _refuse_titles(text, titles, kinds)

@@ -31,7 +31,7 @@ from rpscli.records.quantities import (
     why_no_numbers,
 )
 from rpscli.records.source import Source
-from rpscli.records.words import look_alikes
+from rpscli.records.words import LIMITS, look_alikes, speaks_of
 
 Array = NDArray[np.float64]
 Meant = TypeVar("Meant")
@@ -299,6 +299,8 @@ class RecordText:
         if self.multiple is not None:
             return
         for index, line in lines:
+            if speaks_of(line, LIMITS):
+                continue  # the range of an instrument
             match = _MULTIPLE.search(line)
             found = match[1] if match and to_float(match[1]) != 1.0 else ""
             for unit in re.finditer(key, line, re.IGNORECASE):
@@ -438,7 +440,7 @@ class RecordText:
                     said.line,
                 )
         if (said := stated.peak) is not None:
-            numeral, _, own = said.value.partition(" ")
+            numeral, _, own = said.value.replace(",", ".").partition(" ")
             of_peak = ACCELERATIONS[canonical_unit(own) or unit] / factor
             wanted = of_peak * abs(self.number(said._replace(value=numeral)))
             peak = float(np.max(np.abs(values)))

@@ -75,7 +75,10 @@ def recording_of(lines: Iterable[str]) -> Recording:
     if "origin" in said and not days_of(said["origin"]):
         del said["origin"]  # a clock time, whose date stands elsewhere
     if "origin" not in said and (titled is None or not titled.origin):
-        said |= _origin_among(lines)
+        found_time = _origin_among(lines)
+        named = "event" in said or (titled is not None and titled.event)
+        if not named or seconds_of(found_time.get("origin", "")) is not None:
+            said |= found_time
     found = (titled or Recording())._replace(**said)  # type: ignore[arg-type]
     if place:
         found = found._replace(station=f"{found.station} {place}".strip())
@@ -121,7 +124,7 @@ def _origin_among(lines: Iterable[str]) -> dict[str, str]:
                 date = date or value
             elif speaks_of(match[1], TIMES | ORIGINS) and has_clock(value):
                 clock = clock or value
-    return {"origin": f"{date} {clock}"} if date and clock else {}
+    return {"origin": f"{date} {clock}".strip()} if date else {}
 
 
 _DIP = re.compile(

@@ -35,13 +35,14 @@ _OF_ACCELERATION = (
     r"(?:PGA|PHA|A_?max|peak(?:\s*value)?(?=\s*[=:])"
     r"|(?:abs[\w.]*[\s_]*)?(?:peak|max[\w.]*)[\s_]*(?:ground[\s_]*)?acc[\w.]*)"
 )
+_PEAK = rf"{NUMBER_PATTERN}(?:,[0-9]+)?"
 _OF_SOMETHING = r"(?:(?:abs\w*[\s_]*)?(?:peak|max\w*)(?:[\s_]*(?:value|ampl\w*))?)"
 PEAK_PATTERN = (
     rf"(?<!\w){_OF_ACCELERATION}(?:\s*value)?"
-    rf"(?:\s*[\[(]\s*({UNIT_PATTERN})\s*[\])]\s*[=:]?\s*({NUMBER_PATTERN})"
-    rf"|\s*[=:]?\s*({NUMBER_PATTERN})\s*({UNIT_PATTERN})"
-    rf"|\s*[=:]\s*({NUMBER_PATTERN})(?![\d.]|,\d))"
-    rf"|(?<!\w){_OF_SOMETHING}\s*[=:]?\s*({NUMBER_PATTERN})\s*({UNIT_PATTERN})"
+    rf"(?:\s*[\[(]\s*({UNIT_PATTERN})\s*[\])]\s*[=:]?\s*({_PEAK})"
+    rf"|\s*[=:]?\s*({_PEAK})\s*({UNIT_PATTERN})"
+    rf"|\s*[=:]\s*({_PEAK})(?![\d.]|,\d))"
+    rf"|(?<!\w){_OF_SOMETHING}\s*[=:]?\s*({_PEAK})\s*({UNIT_PATTERN})"
 )
 """A largest acceleration; where words do not say of what it is, its unit has to."""
 

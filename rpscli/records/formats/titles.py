@@ -42,7 +42,7 @@ ANY_UNIT = re.compile(rf"(?:{_ANY}|-)", re.IGNORECASE)
 """A unit, or none, in a row of units."""
 
 _BRACKETED = re.compile(r"([^\[(]*?)[\s_]*[\[(]([^\])]*)[\])]")
-_BEHIND = re.compile(rf"(.+?)(?:\s+in\s+|[\s_]+)({_ANY})", re.IGNORECASE)
+_BEHIND = re.compile(rf"(.+?)(?:\s+in\s+|[\s_]+|,\s*)({_ANY})", re.IGNORECASE)
 _TIME = re.compile(
     r"(?:elapsed[\s_]*)?time(?:[\s_]*(?:from|since)[\s_]*\w+)?|t|seconds?|secs?"
     r"|zeit|datetime|temps|tiempo|tempo|zaman|sure|время|χρονοσ|jikan|shijian|时间|時間|時刻"
@@ -82,7 +82,9 @@ _OTHERS = {
     "a drift": r"\bdrift",
     "a distance": r"\bdist\w*|\bdepth\b",
 }
-_CHANGED = re.compile(r"[²³|]|\^\s*[23]|\blog|\babs|\bsq(?:r|uared?)?\b", re.IGNORECASE)
+_CHANGED = re.compile(
+    r"[²³|]|\d\s*[x*×]|[*×]\s*\d|\^\s*[23]|\blog|\babs|\bsq(?:r|uared?)?\b", re.IGNORECASE
+)
 """Marks of what is computed from values."""
 _COUNT = re.compile(
     r"(?:sample|index|indice|indeks|idx|no\.?|nr\.?|n|i|num(?:ber)?|#|row|point|sira"
@@ -174,7 +176,7 @@ class ColumnTitle(NamedTuple):
 
     @property
     def _count(self) -> str:
-        counts = not self.unit and _COUNT.fullmatch(self.name)
+        counts = not self.unit and (not self.name or _COUNT.fullmatch(self.name))
         return COUNT if counts else UNKNOWN
 
 
