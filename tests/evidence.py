@@ -33,6 +33,7 @@ CAPABILITIES = (
     "floors on vertical springs",
     "storeys that yield",
     "both components",
+    "turning slabs",
     "steps, events, energy",
     "modes",
     "pushover",

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from conformance import conforms
 
 from rpscli import (
     Bearing,
@@ -84,6 +85,10 @@ def released(structure, way, rate=(0.0, 0.0, 0.0), seconds=1.0, accuracy=4.0, **
     return samples, slab[0], columns
 
 
+def of_slab(quantity, expected, found, within, authority, source):
+    conforms("turning slabs", quantity, expected, found, within, authority, source)
+
+
 def balance(samples):
     """Largest part of the energy that is not accounted for."""
     kept = samples[:, 6] + samples[:, 8:12].sum(axis=1) + samples[:, 17] - samples[:, 7]
@@ -93,6 +98,7 @@ def balance(samples):
 FACTORS = (1.02, 0.99, 1.01, 0.98)
 
 
+@pytest.mark.evidence("turning slabs", "program")
 @pytest.mark.parametrize(
     ("way", "factors"),
     [
@@ -119,9 +125,14 @@ def test_flat_columns_move_as_lagranges_equations_have_it(way, factors):
     found = released(structure, way, seconds=0.4)[0][::20, :3]
     expected = oracle.free(way, seconds)
     assert np.abs(expected[-1] - expected[0]).max() > 0.01
-    np.testing.assert_allclose(found, expected, rtol=0, atol=2e-8)
+    of_slab(
+        "ways of the slab [m, rad], free, unequal columns" if factors else
+        "ways of the slab [m, rad], free", expected, found, 2e-8, "independent program",
+        "Lagrange's equations of each column, differences, adaptive rule",
+    )  # fmt: skip
 
 
+@pytest.mark.evidence("turning slabs", "exact")
 @pytest.mark.parametrize("bearing", [FLAT, CURVED])
 def test_without_a_turn_it_is_the_podium_of_both_components(bearing):
     """Released tilted along x, equal columns: the other kernel, until it passes."""
@@ -136,7 +147,10 @@ def test_without_a_turn_it_is_the_podium_of_both_components(bearing):
     plain = replace(structure, twist=None)
     other = time_history(plain, MotionComponents(still, y=still), settings)
     expected = other.trace.cap_beam_displacement[:61]
-    np.testing.assert_allclose(samples[:61, 0], expected, rtol=0, atol=1e-9 * moved)
+    of_slab(
+        "displacement without a turn [m]", expected, samples[:61, 0], 1e-9 * moved,
+        "identity", "the kernel of both components",
+    )  # fmt: skip
     assert np.abs(samples[:, 1:3]).max() == 0.0
 
 
@@ -170,6 +184,7 @@ def test_mirrored_turned_and_renumbered_it_is_the_same():
     np.testing.assert_allclose(back, one, rtol=0, atol=1e-12)
 
 
+@pytest.mark.evidence("turning slabs", "exact")
 def test_a_small_turn_grows_by_the_energy_of_the_plan():
     """psi'' over psi of (17.12) with all inertia that turns; none below the threshold."""
     structure = podium()
@@ -188,7 +203,11 @@ def test_a_small_turn_grows_by_the_energy_of_the_plan():
     held = np.interp(u, moved, force) / u + np.interp(u, moved, slope)
     inertia = structure.cap_beam_mass * kernel.gyration(plan_of(structure)) ** 2
     columns = 1e3 / 4.0 * (1.0 + 1.0 / 3.0) * 4 * 50.0  # of M less its points, some 1 %
-    assert far == pytest.approx(-25.0 * held / (inertia + columns), rel=0.02)
+    wanted = -25.0 * held / (inertia + columns)
+    of_slab(
+        "growth of a small turn [1/s2]", wanted, far, 0.02 * wanted,
+        "identity", "second derivative of the energy of the plan (17.12)",
+    )  # fmt: skip
 
 
 def state_of(structure, settings=None):
@@ -200,6 +219,7 @@ def state_of(structure, settings=None):
     return slab.view(np.recarray)[0], columns.view(np.recarray)
 
 
+@pytest.mark.evidence("turning slabs", "exact")
 @pytest.mark.parametrize("lever", [0.0, 0.3])
 @pytest.mark.parametrize("load", [(1.0, 0.0, 2.0), (1.0, 1.0, 5.0), (0.3, -1.0, 4.0)])
 @pytest.mark.parametrize("rows_y", [SQUARE, (-15.0, 15.0)])
@@ -212,9 +232,14 @@ def test_full_contact_holds_up_to_the_limit_surface(load, rows_y, lever):
     expected = factor_of(
         plan_of(structure), weights / scale, load, float(s.pivot) / scale
     )
-    assert 1.0 / share == pytest.approx(scale * expected, rel=1e-7)
+    wanted = scale * expected
+    of_slab(
+        "push and torque that full contact holds", wanted, 1.0 / share, 1e-7 * wanted,
+        "independent program", "limit surface of a sliding plate, by a search over centres",
+    )  # fmt: skip
 
 
+@pytest.mark.evidence("turning slabs", "exact")
 def test_push_and_torque_alone():
     """Translation: the circle of (13.11). A turn about the centre: W tan(alpha) r."""
     structure = podium()
@@ -224,9 +249,14 @@ def test_push_and_torque_alone():
         0.15 * W / 5.0, rel=1e-9
     )
     torque = 1.0 / load_share(s, columns, 0.0, 0.0, 1.0)
-    assert torque == pytest.approx(0.15 * W * math.hypot(5.0, 5.0), rel=1e-9)
+    wanted = 0.15 * W * math.hypot(5.0, 5.0)
+    of_slab(
+        "torque that full contact holds [N m]", wanted, torque, 1e-9 * wanted,
+        "hand calculation", "W tan(alpha) r",
+    )  # fmt: skip
 
 
+@pytest.mark.evidence("turning slabs", "exact")
 @pytest.mark.parametrize(
     ("count", "single"), [(2, 0.9192008194233525), (4, 0.9791229103442267)]
 )
