@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 
 from rpscli.case.case import Case
-from rpscli.commands.inputs import RESULTS
+from rpscli.commands.inputs import RESULTS, CaseInput, CaseMotion, MotionRequest
 from rpscli.commands.page_done import PageDone, ends
+from rpscli.commands.page_section import PAGE_SECTIONS, SectionRequest, with_brought
 from rpscli.commands.shell.options import CaseRequest, Output, RunChoices
 from rpscli.commands.study import Swept, counts_of_points, swept
 from rpscli.errors import RecordError
@@ -45,7 +47,8 @@ def study_page(study: Study, out: Output) -> PageDone:
     if (systems := len(layout.properties)) > 1:
         named = labels(layout.plan.keys, layout[0].values)
         which = [f"The first of {systems} systems: {named}."]
-    words = CaseRequest(layout.study.source, study.overrides).words
+    asked = CaseRequest(layout.study.source, study.overrides)
+    words = asked.words
     stored = (
         f"Every point is stored in {folder.folder}; points.csv there has them all,"
         " failed.csv the command that computes each failed point alone."
@@ -59,7 +62,10 @@ def study_page(study: Study, out: Output) -> PageDone:
         inputs=study_input(
             study, first, "The case" if systems == 1 else "Its first system"
         ),
-        results=_study_results(done, out),
+        results=[
+            *_study_results(done, out),
+            *_brought(study, CaseInput(first, asked), out),
+        ],
         commands=[["rps", "sweep", *words], ["rps", "report", *words]],
         stored=[stored],
         both=all(layout.pairs),
@@ -84,6 +90,28 @@ def _study_results(done: Swept, out: Output) -> Iterator[ReportSection]:
         ]
         yield ReportSection("Statistics", [*cut(statistics)])
     yield figures(done.found.files, study)
+
+
+def _brought(study: Study, first: CaseInput, out: Output) -> Iterator[ReportSection]:
+    """Sections that a list of records brings, of the first system; none where records
+    have factors of the study's own.
+    """
+    layout = study.layout
+    typed = [
+        record for record in layout.study.file.records or () if isinstance(record, str)
+    ]
+    wanted = with_brought({}, typed) if layout.scales in ((1.0,), (None,)) else {}
+    if not wanted:
+        return
+    motions = []
+    for request in filter(None, layout.records):
+        with suppress(RecordError):  # told where it is read
+            ground = layout.context.records.motion(request)
+            motions.append(CaseMotion(MotionRequest(request.source), ground))
+    names = [each.ground.horizontal.name for each in motions]
+    for name, value in wanted.items():
+        section = SectionRequest(first, motions, names, 0, value, out.terminal, out.look)
+        yield PAGE_SECTIONS[name].made(section)
 
 
 def _study_warnings(done: Swept) -> Iterator[str]:

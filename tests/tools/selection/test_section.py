@@ -58,6 +58,16 @@ def test_a_list_that_was_selected_brings_its_target(rps, rps_json, target):
         assert f"{motion['event']} {factor} {three} {motion['misfit']:.3f}" in text
 
 
+@pytest.mark.parametrize(("scale", "brings"), [("", True), ("scale: [0.5, 1]\n", False)])
+def test_a_list_brings_its_target_to_the_page_of_a_study(rps, rps_json, scale, brings):
+    found = selected(rps_json, EC8, "-n", "3")
+    study = "rps: 1\nbase: small.yaml\nrecords: ['list:chosen/selection.txt']\n"
+    Path("study.yaml").write_text(study + scale, encoding="utf-8")
+    rps("report", "study.yaml", "-o", "out.html", exit_code=None)
+    told = f"rms of ln(mean/target) {found['misfit']:.4f}" in section()
+    assert told == brings
+
+
 def test_a_target_is_typed_and_factors_are_those_of_the_histories(rps, rps_json):
     """Half of the motions have half of the mean spectrum, and miss the rules."""
     write_case("small.yaml", more="limits: {max_rotation: 0.05}\n")
