@@ -500,7 +500,7 @@ def devices_figure(result: TimeHistoryResult, title: str, figure: style.Figure) 
     count = len(result.structure.devices)
     columns = min(count, 2 if narrow else 3)
     rows = -(-count // columns)
-    words = title, result.record.name, result.sampling
+    words = title, record_name(result), result.sampling
     style.begin(figure, words, 0.5 + 2.7 * rows, max(2.6 * columns, 4.0))
     draws = [partial(draw_device, result=result, index=index) for index in range(count)]
     for axes in style.grid(figure, draws, columns):
