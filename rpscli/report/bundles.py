@@ -152,7 +152,9 @@ def floor_spectra_files(
             columns.append(Column(f"{prefix}pseudo_acceleration", "m/s2", acceleration))
             columns.append(Column(f"{prefix}displacement", "m", of.displacement.ravel()))
     yield "floor_spectra.csv", csv_text(columns)
-    record = f"{history.record_name(result)}{', fixed base elastic' * result.structure.yields}"
+    record = (
+        f"{history.record_name(result)}{', fixed base elastic' * result.structure.yields}"
+    )
     draw = partial(floors.floor_spectra_figure, isolated, fixed, title, record)
     yield from figure_files({"floor_spectra": draw}, look).items()
 

@@ -10,6 +10,7 @@ from rpscli.errors import RpsError
 from rpscli.report.bundles import timehistory_files
 from rpscli.report.captions import CAPTIONS
 from rpscli.report.twist import columns_table, depends
+from rpscli.tools.animation.slab import SlabView
 
 CASE = """\
 rps: 1
@@ -202,3 +203,21 @@ def test_demands_which_would_not_turn_are_refused():
     structure = case().structure
     with pytest.raises(RpsError, match="centre alone"):
         rpscli.demand(structure, pair())
+
+
+def test_a_film_shows_the_slab_from_above(result):
+    from matplotlib.figure import Figure
+
+    axes = Figure().add_subplot()
+    view = SlabView(axes, result.twist)
+    sample = int(np.abs(result.twist.ways[:, 2]).argmax())
+    view.show(sample)
+    heads = np.transpose(view.heads.get_data())
+    ways = (heads - result.twist.run.places) / view.scale
+    np.testing.assert_allclose(ways, result.twist.column_ways[sample], atol=1e-12)
+    corners = view.outline.get_xy()[:4]
+    side = corners[1] - corners[0]
+    turned = np.arctan2(side[1], side[0])
+    psi = result.twist.ways[sample, 2]
+    assert turned == pytest.approx(np.arctan(view.scale * psi), rel=1e-9)
+    assert np.all(np.abs(corners) <= axes.get_xlim()[1] * 1.5)

@@ -32,6 +32,7 @@ from rpscli.report.figures.bearing import (
 from rpscli.report.figures.history import in_plane, lean_azimuth
 from rpscli.report.figures.look import ENCODER, MOST_FRAMES, USUAL, FilmRequest, Look
 from rpscli.report.figures.structure import COLUMNS, level_heights, modes_figure
+from rpscli.tools.animation.slab import SlabView
 
 if TYPE_CHECKING:
     from matplotlib.lines import Line2D
@@ -309,10 +310,13 @@ def history_film(
 
 def _detail(
     axes: style.Axes, result: TimeHistoryResult, samples: NDArray[np.int64]
-) -> tuple[PlanView | BearingView, NDArray[Any]]:
-    """A column from above for pairs, else an end of it; and what each frame shows of
-    it.
+) -> tuple[SlabView | PlanView | BearingView, NDArray[Any]]:
+    """The slab from above where it turns, a column for other pairs, else an end of it;
+    and what each frame shows of it.
     """
+    if result.twist is not None:
+        times = result.trace.time[samples]
+        return SlabView(axes, result.twist), np.searchsorted(result.twist.time, times)
     if result.trace.y is not None:
         return PlanView(axes, result), samples
     detail = BearingView(axes, result.structure)
