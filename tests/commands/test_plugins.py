@@ -560,7 +560,7 @@ def test_the_example_is_installed_by_pip(tmp_path, workplace):
             str(ROOT / word) if word.startswith("cases/") else word for word in words
         ]
         printed.append(run_in_shell(shlex.join(words), PYTHONPATH=search))
-    assert printed[0].count("rps-example 1.0") == 7
+    assert printed[0].count("rps-example 1.0") == 8
     assert "ASI" in printed[1]
     assert list(workplace.rglob("phase_plane.png"))
     assert list(workplace.rglob("selection.txt"))
