@@ -213,8 +213,11 @@ SAMPLED = (
     _Q("max_twist", "rad", "twist about the vertical", r"$\psi$", limit="0.02", needs="twist"),
     _Q("residual_twist", "rad", "residual twist", limit="0.002", needs="twist"),
     _Q("max_corner_displacement", "m", "displacement of a column", limit="0.3", needs="twist",
-        meaning="largest displacement of the head of the column that moves most"),
-    _Q("corner_factor", "-", "corner factor", limit="1.5", needs="twist",
+        demand=True, meaning=(
+            "of the head of the column that moves most, or of the cap beam without a turn if"
+            " that is larger"
+        )),
+    _Q("corner_factor", "-", "corner factor", limit="1.5", needs="twist", demand=True,
         meaning="largest displacement of a column over that of the slab's centre, both turning"),
     _Q("max_column_rotation", "rad", "rotation of a column", limit="0.1", needs="twist",
         meaning="of the one that tilts most, where the slab turns"),

@@ -195,10 +195,13 @@ class OfTurningSlab:
     structure: PodiumStructure
     history: Record
     twist: TwistResult | None
+    max_cap_beam_displacement: float
 
     @property
     def max_rotation(self) -> float:
-        """Largest rotation [rad]: of the column that tilts most where the slab turns."""
+        """Largest rotation [rad]: of the column that tilts most where the slab turns, or of
+        the podium without a turn if that is larger.
+        """
         alone = float(self.history["max_theta"])
         return max(alone, self.max_column_rotation or 0.0)
 
@@ -220,8 +223,12 @@ class OfTurningSlab:
 
     @property
     def max_corner_displacement(self) -> float | None:
-        """Largest displacement of a column's head [m]; likewise."""
-        return None if self.twist is None else self.twist.max_corner_displacement
+        """Largest displacement of a column's head [m], or of the cap beam where it does not
+        turn if that is larger; likewise.
+        """
+        if self.twist is None:
+            return None
+        return max(self.max_cap_beam_displacement, self.twist.max_corner_displacement)
 
     @property
     def corner_factor(self) -> float | None:

@@ -17,6 +17,8 @@ from rpscli.units import Written, si_factor
 MAIN = (
     "rotation_ratio",
     "max_cap_beam_displacement",
+    "max_corner_displacement",
+    "corner_factor",
     "max_base_shear",
     "drift_ratio",
     "ductility",

@@ -19,7 +19,8 @@ DIGITS = 4
 A_TABLE = 5
 """Quantities side by side in a table that fits a page."""
 FIRST = (
-    "rotation_ratio", "max_cap_beam_displacement", "max_base_shear", "drift_ratio",
+    "rotation_ratio", "max_cap_beam_displacement", "max_corner_displacement",
+    "corner_factor", "max_base_shear", "drift_ratio",
     "max_floor_acceleration", "fixed_base_ratio",
 )  # fmt: skip
 """Demands in the order of the table, after what limits ask for; others follow."""

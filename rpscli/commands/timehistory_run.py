@@ -68,6 +68,7 @@ from rpscli.report.timehistory import (
     timehistory_tables,
     without_passes,
 )
+from rpscli.report.twist import OF_WHICH_SLAB
 from rpscli.sweep.statistics.beside import beside_verdicts
 from rpscli.sweep.statistics.summary import (
     Records as Histories,
@@ -498,6 +499,8 @@ def set_tables(computed: Sequence[Computed]) -> Iterator[Part]:
         both = any(each.ground.y is not None for each in case.histories)
         for text in without_passes(own.structure, both):
             yield f"friction demands are {text}"
+        if own.structure.twist is not None:
+            yield OF_WHICH_SLAB
         yield overturned_text(own.structure, own.analysis)
         yield restitution_text(own.structure)
     yield from _verdict_parts(computed)

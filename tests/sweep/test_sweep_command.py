@@ -416,3 +416,14 @@ def test_a_record_that_is_listed_twice_is_named(study_of):
     source = "synthetic:?pga=0.5g&duration=4&dt=0.02&seed=2"
     assert study.notes == (f"records: {source}: given more than once, taken once",)
     assert study.sources == study_of(STUDY).sources
+
+
+def test_keys_of_a_study_in_an_axis_are_refused(sweep, workplace):
+    base = (workplace / "base.yaml").read_text(encoding="utf-8")
+    inside = (
+        "rps: 1\nbase: base.yaml\nvary:\n  - podium.bearing.slenderness: [0.1, 0.15]\n"
+        "    linked: {podium.bearing.wedge_slenderness: {podium.bearing.slenderness: 2}}\n"
+    )
+    told = sweep("study.yaml", study=inside, base=base)
+    assert told.exit_code == 3
+    assert "5:5: linked stands beside vary, not in one of its axes" in told.stderr

@@ -169,6 +169,7 @@ def study_of(
     design asks for no reports.
     """
     whole, asked = (document, {}) if kinds is None else written_out(document, kinds)
+    document.refuse(_misplaced(document))
     file = checked(format_with(asked), whole)
     reports = requests_of(whole, file)
     document.refuse(_label_faults(file))
@@ -234,6 +235,20 @@ def _unequal(document: Document, file: StudyFile) -> Iterator[Fault]:
                 " many, or begin another axis with `-`"
             )
             yield Fault(("vary", index, key), text, at_key=True)
+
+
+BESIDE_VARY = ("linked", "records", "scale", "limits", "reports", "base")
+"""Keys of studies that stand beside `vary`, not in one of its axes."""
+
+
+def _misplaced(document: Document) -> Iterator[Fault]:
+    """Keys of the study that stand in an axis."""
+    axes = document.at(("vary",))
+    for index, columns in enumerate(axes if isinstance(axes, list) else ()):
+        for key in BESIDE_VARY if isinstance(columns, dict) else ():
+            if key in columns:
+                text = f"{key} stands beside vary, not in one of its axes: write it there"
+                yield Fault(("vary", index, key), text, at_key=True)
 
 
 def _label_faults(file: StudyFile) -> Iterator[Fault]:

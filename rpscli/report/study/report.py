@@ -232,7 +232,12 @@ def _readable(columns: Sequence[Column], labels: Mapping[str, str]) -> Table:
                 ["-" if math.isnan(value) else percent(value, 1.0) for value in values]
             )
         else:
-            cells.append([OVERTURNED.get(str(v)) or shown(v, 3) for v in values])
+            texts = [OVERTURNED.get(str(v)) or shown(v, 3) for v in values]
+            fallen = known.get(f"{name};overturned") or [0] * len(values)
+            cells.append([
+                f"{text} ({n} overturned)" if n and text not in OVERTURNED.values() else text
+                for text, n in zip(texts, fallen, strict=True)
+            ])  # fmt: skip
     return Table.of_texts(heads, zip(*cells, strict=True), words=words, keys=words)
 
 

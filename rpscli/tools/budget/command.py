@@ -193,6 +193,7 @@ def _values(case: Case) -> Iterator[tuple[str, ...]]:
                 f"superstructure.vertical_period={factor * period:g} s",
             )
     yield from _of_building_and_devices(case)
+    yield from _of_twist(case)
     place = "podium.bearing.dimensions" if bearing.dimensions else "podium.bearing"
     for name in DIMENSIONS:
         given = getattr(bearing.dimensions or bearing, name, None)
@@ -229,6 +230,42 @@ def _of_building_and_devices(case: Case) -> Iterator[tuple[str, ...]]:
             value = float(getattr(device, name) or 0.0)
             for factor in fifth if value else ():
                 yield "devices", f"podium.devices.{n}.{name}={factor * value:.12g}"
+
+
+LEVERS = 0.0, 0.005, 0.02
+"""Of friction in pivoting [m], which nobody has measured."""
+SEEDS = 5
+USUAL_SCATTER = 0.02
+USUAL_ECCENTRICITY = 0.05
+
+
+def _of_twist(case: Case) -> Iterator[tuple[str, ...]]:
+    """Changes of what a turn about the vertical depends on and nobody knows."""
+    twist = case.structure.twist
+    if twist is None:
+        return
+    for lever in LEVERS:
+        if lever != twist.pivot_friction:
+            yield "pivot friction", f"podium.twist.pivot_friction={lever:g}"
+    for factor in (0.5, 2.0) if twist.seats else ():
+        yield "seats", f"podium.twist.seats={factor * (twist.seats or 0.0):g}"
+    if not twist.factors and not case.structure.bearing.is_spherical:
+        first = twist.seed + bool(twist.scatter)
+        for seed in range(first, twist.seed + SEEDS):
+            drawn = (
+                f"podium.twist.scatter={{slenderness: {USUAL_SCATTER:g}, seed: {seed}}}"
+            )
+            given = f"podium.twist.scatter.seed={seed}" if twist.scatter else drawn
+            yield "scatter of slenderness", given
+    if case.structure.superstructure is None:
+        return
+    x, y = twist.eccentricity
+    if not (x or y):
+        x = y = USUAL_ECCENTRICITY
+    signs = {(a * x, b * y) for a in (1.0, -1.0) for b in (1.0, -1.0)}
+    for e_x, e_y in sorted(signs - {twist.eccentricity}):
+        given = f"[{e_x:g}, {e_y:g}]"
+        yield "eccentricity of storeys", f"superstructure.torsion.eccentricity={given}"
 
 
 def _scaled(motion: inputs.MotionRequest, scale: float) -> inputs.MotionRequest:

@@ -47,9 +47,12 @@ BETWEEN = " / "
 """Between the values of one input, and what follows from each."""
 MOST_BARS = 24
 """In the picture; the table has all."""
-CAPTION = (
-    "orange: factor 2, red: other verdict, dots: records; arrows: overturned, or farther"
-)
+CAPTION = "dots: records; arrows: overturned, or farther"
+
+
+COLOURS = (style.BLUE, style.ORANGE, style.RED)
+KINDS = ("within a factor of 2", "a factor of 2 or more", "another verdict")
+"""Of bars, by what they mean."""
 
 
 class BudgetRow(NamedTuple):
@@ -373,6 +376,11 @@ class Budget:
             range(-1, len(rows)), [RECORDS, *names], fontsize=7, parse_math=False
         )
         panels[0].invert_yaxis()
+        for colour, label in zip(COLOURS, KINDS, strict=True):
+            panels[0].bar([np.nan], [0.0], color=colour, label=label)
+        if any(effect.limit for effect in shown_ones):
+            panels[0].plot([], [], color=style.RED, ls="--", lw=0.9, label="limit")
+        style.legend_below(figure, [panels[0]])
 
     def _draw(self, axes: style.Axes, effect: Effect, rows: Sequence[list[int]]) -> None:
         """Ratios of one result to that of the case; what overturns ends at the panel's
@@ -388,7 +396,7 @@ class Budget:
         bound = effect.limit.limit / own if effect.limit else np.nan
         far = _end_of_axis(ratio[every], bound)
         bars = np.clip(np.nan_to_num(ratio[every], nan=1.0), -far, far)
-        colours = np.array([style.BLUE, style.ORANGE, style.RED])
+        colours = np.array(COLOURS)
         kinds = np.where(effect.turned, 2, effect.moved)[every]
         look: dict[str, Any] = {
             "left": 1.0,
