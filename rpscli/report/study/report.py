@@ -232,13 +232,23 @@ def _readable(columns: Sequence[Column], labels: Mapping[str, str]) -> Table:
                 ["-" if math.isnan(value) else percent(value, 1.0) for value in values]
             )
         else:
-            texts = [OVERTURNED.get(str(v)) or shown(v, 3) for v in values]
-            fallen = known.get(f"{name};overturned") or [0] * len(values)
-            cells.append([
-                f"{text} ({n} overturned)" if n and text not in OVERTURNED.values() else text
-                for text, n in zip(texts, fallen, strict=True)
-            ])  # fmt: skip
+            cells.append(_with_overturned(values, known.get(f"{name};overturned")))
     return Table.of_texts(heads, zip(*cells, strict=True), words=words, keys=words)
+
+
+def _with_overturned(
+    values: Sequence[Any], overturned: Sequence[int] | None
+) -> list[str]:
+    """Texts of values, with how many histories overturned where a statistic leaves them
+    out.
+    """
+    told = [OVERTURNED.get(str(value)) for value in values]
+    plain = [word or shown(v, 3) for word, v in zip(told, values, strict=True)]
+    counts = overturned or [0] * len(plain)
+    return [
+        f"{text} ({count} overturned)" if count and word is None else text
+        for text, word, count in zip(plain, told, counts, strict=True)
+    ]
 
 
 def _times(value: Any, factor: float | None) -> Any:
