@@ -230,7 +230,8 @@ def _are_multiples(
     """True of three motions of which two are one times a factor."""
     for one, other in combinations((motions[of].acceleration for of in three), 2):
         size = min(one.size, other.size)
-        a, b = one[:size], other[:size]
+        a = one[:size]
+        b = other[:size]
         if abs(float(a @ b)) > MULTIPLE * float(np.linalg.norm(a) * np.linalg.norm(b)):
             return True
     return False

@@ -93,7 +93,8 @@ def _date(text: str) -> tuple[tuple[int, int, int], str] | None:
     """Year, month and day, and the text without them."""
     text = re.sub(r"(\d{4})年\s?(\d{1,2})月\s?(\d{1,2})日", r"\1-\2-\3 ", text)
     if match := _ORDINAL.search(text):
-        year, number = int(match[1]), int(match[2])
+        year = int(match[1])
+        number = int(match[2])
         rest = f"{text[: match.start()]} {text[match.end() :].lstrip('-')}"
         if 0 < number <= 366:
             at = datetime(year, 1, 1, tzinfo=UTC) + timedelta(days=number - 1)

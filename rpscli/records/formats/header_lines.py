@@ -264,7 +264,7 @@ def _loose_number(index: int, part: str) -> Iterator[Said]:
     """A number at the end of words, or by itself, that is no year."""
     match = _AT_THE_END.fullmatch(part)
     if match and not _TITLED.match(part):
-        key, numeral, behind = match[1], match[2], match[3] or ""
+        key, numeral, behind = match.groups("")
         if not _YEAR.fullmatch(numeral) or speaks_of(key, COUNTED):
             yield Said(key, numeral, behind, index, part[:60], keyed=False)
             return
