@@ -317,7 +317,7 @@ def test_interrupted_and_resumed_or_in_two_threads_it_ends_in_the_same_bytes(
     design, workplace
 ):
     assert design(BUILDING, "--jobs", "2", "-o", "calm").exit_code == 0
-    interrupting = str(Path(__file__).with_name("interrupted.py"))
+    interrupting = str(Path(__file__).parents[2] / "sweep" / "interrupted.py")
     words = ("design", "design.yaml", "--jobs", "1", "--json", "--figures", "none")
     stopped = python(interrupting, *words, folder=workplace, exit_code=130)
     assert json.loads(stopped.stdout)["points"]["stored"] > 0
