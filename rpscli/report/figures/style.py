@@ -511,13 +511,15 @@ def crowded(axes: Axes) -> bool:
 
 
 def legend_below(figure: Figure, panels: Iterable[Axes]) -> None:
-    """One legend for several axes, below them; in somebody's
-    figure the first entries only.
+    """One legend for several axes, below them; the first entries where not all have room,
+    in somebody's figure a seventh of it.
     """
     if found := entries(panels):
         width, height = inches(figure)
-        most = max(1, int(0.15 * height / LINE)) if given(figure) else None
-        arranged = _arranged(found, width - 0.1, most)
+        room = (
+            0.15 * height if given(figure) else 0.5 * PAGE
+        )  # what is left is the figure's
+        arranged = _arranged(found, width - 0.1, max(1, int(room / LINE)))
         rows = -(-len(arranged["labels"]) // arranged["ncols"])
         grow(figure, rows * max(1 + name.count("\n") for name in arranged["labels"]) - 1)
         figure.legend(**arranged, loc="outside lower center")
