@@ -124,3 +124,10 @@ def test_the_site_is_built_without_a_warning(tmp_path):
     )  # fmt: skip
     assert built.returncode == 0, built.stderr
     assert "0 broken links" in built.stdout
+
+
+def test_names_of_the_reference_are_those_of_the_program(modules):
+    for layer, (_, names) in modules["reference"].PYTHON.items():
+        for name in names:
+            module, _, attribute = f"rpscli.{layer}.{name}".rpartition(".")
+            assert hasattr(importlib.import_module(module), attribute), name

@@ -30,7 +30,7 @@ nitpicky = True
 nitpick_ignore_regex = [
     (
         "py:obj",
-        r".*",
+        r"(?s).*",
     ),  # single backticks of docstrings: a link if there is one, else code
     (
         "py:.*",
@@ -40,6 +40,10 @@ nitpick_ignore_regex = [
         "py:.*",
         r"(Record|Way|FileName|Standing|Target|Measure|Of|ReportRequest|Bed|tuple\[.*)",
     ),  # names of types
+    (
+        "py:class",
+        r"rpscli\.(analyses|model|records)\..*|[A-Z]\w+",
+    ),  # types that have no page of their own
     (
         "py:.*",
         r"(numpy|np|collections|pathlib|typing|types|matplotlib|pandas|pydantic)\..*",

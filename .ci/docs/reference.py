@@ -35,12 +35,12 @@ PYTHON: dict[str, tuple[str, tuple[str, ...]]] = {
             "devices.Stop", "devices.Tendon", "devices.RollingResistance",
         ),
     ),
-    "records": ("Ground motions", ("spectrum.ResponseSpectrum",)),
+    "records": ("Ground motions", ("measures.ResponseSpectrum",)),
     "analyses": (
         "Analyses and their results",
         (
             "trace.Trace", "trace.Event", "trace.DeviceDemand", "trace.DeviceTrace",
-            "trace.Direction", "results.Energy", "results.ColumnForces",
+            "trace.DirectionTrace", "results.Energy", "results.ColumnForces",
             "column_forces.AxialForces", "fixed_base.FixedBaseResponse", "modal.FixedBaseModes",
             "modal.UpliftedModes", "pushover.StoreyCurve", "pushover.CapacityCurve",
             "floor_spectra.FloorSpectra",
