@@ -384,3 +384,13 @@ def test_a_table_of_which_one_title_is_not_understood(tmp_path):
     found, notes = expanded([str(tmp_path)])
     assert [each.rpartition("=")[2] for each in found] == ["2"]
     assert "vertical components left out" in notes[0]
+
+
+def test_uncorrected_values_are_left_out_of_folders(tmp_path):
+    path = write(tmp_path, "Uncorrected acceleration", name="raw.txt")
+    write(tmp_path, "corrected", name="whole.txt")
+    found, notes = expanded([str(tmp_path)])
+    assert [each.rpartition("/")[2] for each in found] == ["whole.txt"]
+    assert "raw.txt" in notes[0]
+    (warning,) = load_record(path).warnings
+    assert "uncorrected" in warning

@@ -18,7 +18,12 @@ import numpy as np
 
 from rpscli.errors import RecordError
 from rpscli.records.directions import direction_in
-from rpscli.records.formats.header_lines import Facts, HeaderLines, doubts_of_header
+from rpscli.records.formats.header_lines import (
+    Facts,
+    HeaderLines,
+    doubts_of_header,
+    raw_doubts,
+)
 from rpscli.records.formats.no_motions import refuse_other_quantities, refuse_other_steps
 from rpscli.records.formats.record_text import (
     Array,
@@ -141,6 +146,8 @@ def contents_of_columns(text: RecordText) -> list[Channel]:
     table = table_of(text)
     width = int(table.widths[0])
     recording = recording_of(line.value for line in table.header)
+    if any(raw_doubts(line.value) for line in table.header):
+        return [Channel(refusal="the header says that values are not corrected")]
     titles = [] if np.any(table.widths != width) else _titles(text, table, width)
     try:
         refuse_other_quantities(text, table, titles)
@@ -349,7 +356,10 @@ def _motion(
     unit, factor = text.agreed_factor(stated.unit)
     facts = Facts(values, unit, factor, motion.dt, table.values.size)
     doubts = doubts_of_header(_unread(text, table, titles), facts)
-    known = (each for each in doubts if each not in motion.warnings)
+    doubts += [
+        doubt for of in table.header for doubt in raw_doubts(of.value)
+    ]  # titles too
+    known = (each for each in dict.fromkeys(doubts) if each not in motion.warnings)
     return replace(motion, warnings=(*motion.warnings, *known))
 
 

@@ -340,9 +340,14 @@ def doubts_of_header(header: HeaderLines, facts: Facts) -> list[str]:
                 index,
             )
         doubts += _other_counts(line, facts)
-        if match := _RAW.search(plain):
-            doubts.append(f"the header says {match[0]!r}: give the corrected record")
+        doubts += raw_doubts(line)
     return doubts
+
+
+def raw_doubts(line: str) -> list[str]:
+    """A doubt about values that a line says are not corrected."""
+    match = _RAW.search(folded(line[:_WIDTH]))
+    return [f"the header says {match[0]!r}: give the corrected record"] if match else []
 
 
 _UNKNOWN_UNIT = re.compile(
