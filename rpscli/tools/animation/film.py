@@ -58,7 +58,8 @@ class Scene:
     def __init__(
         self, axes: style.Axes, result: TimeHistoryResult, title: str, speed: float
     ) -> None:
-        of_pair = result.trace.y is not None
+        seen = "" if result.trace.y is None else "along the tilt"
+        seen += ", without a turn" * (result.twist is not None)
         result = in_plane(result)
         self.result = result
         structure = result.structure
@@ -76,7 +77,7 @@ class Scene:
         self.devices = SceneDevices(
             axes, structure.devices, self.feet, 0.5 * self.width, base
         )
-        self._write_texts(axes, title, speed, of_pair=of_pair)
+        self._write_texts(axes, title, speed, seen)
         self._set_limits(axes)
 
     def _draw_bodies(self, axes: style.Axes) -> None:
@@ -92,9 +93,7 @@ class Scene:
             [axes.plot([], [], "k", lw=1.0)[0] for _ in (-1, 1)] if self.floors else []
         )
 
-    def _write_texts(
-        self, axes: style.Axes, title: str, speed: float, *, of_pair: bool
-    ) -> None:
+    def _write_texts(self, axes: style.Axes, title: str, speed: float, seen: str) -> None:
         """Clock, titles and scales, and the line of the ground."""
         clock: dict[str, Any] = {
             "xycoords": "axes fraction",
@@ -106,8 +105,7 @@ class Scene:
         axes.figure.suptitle(title, fontsize=style.small(), parse_math=False)
         axes.axhline(0.0, color=style.BLACK, lw=1.0)
         drifts = f"; storey drifts x {self.magnification:g}" if self.floors else ""
-        if of_pair:
-            axes.set_title("along the tilt", loc="left", fontsize=style.small())
+        axes.set_title(seen, loc="left", fontsize=style.small())
         axes.set_xlabel(
             f"bearings to scale{drifts}; {_pace(speed)}", fontsize=style.small()
         )
