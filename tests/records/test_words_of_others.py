@@ -387,10 +387,29 @@ def test_a_table_of_which_one_title_is_not_understood(tmp_path):
 
 
 def test_uncorrected_values_are_left_out_of_folders(tmp_path):
-    path = write(tmp_path, "Uncorrected acceleration", name="raw.txt")
+    path = write(tmp_path, "Uncorrected acceleration", name="first.txt")
     write(tmp_path, "corrected", name="whole.txt")
     found, notes = expanded([str(tmp_path)])
     assert [each.rpartition("/")[2] for each in found] == ["whole.txt"]
-    assert "raw.txt" in notes[0]
+    assert "first.txt" in notes[0]
     (warning,) = load_record(path).warnings
     assert "uncorrected" in warning
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("quake_x2.txt", "'x2'"), ("0.5x-quake.txt", "'0.5x'"), ("q_normalised.txt", "norm"),
+        ("quake_gal.txt", "'gal'"), ("q-mps2.txt", "'mps2'"), ("uncorrected_EW.txt", "corrected"),
+    ],
+)  # fmt: skip
+def test_a_name_that_says_other_values_than_are_read_is_told(name, said, tmp_path):
+    path = write(tmp_path, name=name)
+    (warning,) = load_record(path).warnings
+    assert said in warning
+    assert load_record(f"{path}?units=1 g&dt=0.01").warnings == ()
+
+
+@pytest.mark.parametrize("name", ["q_g.txt", "acc_x_1.txt", "q_x1.txt", "GX_mod.txt"])
+def test_a_name_that_says_nothing_else_is_read_without_a_word(name, tmp_path):
+    assert load_record(write(tmp_path, name=name)).warnings == ()

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rpscli.errors import stem_of
 from rpscli.records.formats.record_text import Array, RecordText
 from rpscli.records.formats.statements import STATED_PATTERN, Statement
 from rpscli.records.quantities import (
@@ -341,7 +342,49 @@ def doubts_of_header(header: HeaderLines, facts: Facts) -> list[str]:
             )
         doubts += _other_counts(line, facts)
         doubts += raw_doubts(line)
+    if header.text.multiple is None and not doubts:
+        doubts += filter(None, [_doubt_of_name(stem_of(header.text.path), facts.unit)])
     return doubts
+
+
+def _doubt_of_name(name: str, unit: str) -> str:
+    """What the name of a file says of its values, which are read as they stand."""
+    words = re.split(r"[_\s-]+", folded(name))
+    factors = [word for word in words if _is_factor(word)]
+    # Commas keep apart what a name joins: the 1 of "acc_x_1" is no factor.
+    plain = ", ".join(word for word in words if not _FACTOR_OF_NAME.fullmatch(word))
+    if raw := _RAW.search(plain):
+        return f"its name says {raw[0]!r}: give the corrected record"
+    if scaled := _SCALED.search(plain):
+        factors.append(scaled[0])
+    if factors:
+        return (
+            f"its name says {factors[0]!r}, and the values are read as they stand, in"
+            f" {unit}: say ?units=1 {unit} if they are right"
+        )
+    for place, word in enumerate(words, 1):
+        joined = _JOINED_UNIT.fullmatch(word)
+        named = canonical_unit(f"{joined[1]}/s2" if joined else word)
+        # One letter is a unit at the end alone: elsewhere it is a network or a direction.
+        if named is None or (len(word) == 1 and place < len(words)):
+            continue
+        if ACCELERATIONS[named] != ACCELERATIONS[unit]:
+            return (
+                f"its name says {word!r}, and the values are read in {unit}: say"
+                f" ?units=1 {unit} if they are, or ?units=1 {named}"
+            )
+    return ""
+
+
+def _is_factor(word: str) -> bool:
+    """True of x2 and 2x, not of x1."""
+    match = _FACTOR_OF_NAME.fullmatch(word)
+    return match is not None and to_float(match[1] or match[2]) != 1.0
+
+
+_FACTOR_OF_NAME = re.compile(r"x(\d+(?:\.\d+)?)|(\d+(?:\.\d+)?)x")
+_JOINED_UNIT = re.compile(r"([cm]?m)p?s[s2]")
+"""Units as names of files write them, which can hold no slash."""
 
 
 def raw_doubts(line: str) -> list[str]:
