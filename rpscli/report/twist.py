@@ -42,11 +42,13 @@ def twist_parts(result: TimeHistoryResult) -> Iterator[Table | str]:
     factor = twist.corner_factor
     told = "" if factor is None else f": {shown(factor)} times as far"
     centre = shown(1e3 * twist.max_centre_displacement)
+    farthest = shown(1e3 * twist.max_corner_displacement)
+    # Its history ends by itself, often later than that without a turn.
+    end = shown(float(twist.time[-1]))
     yield (
         f"the slab turns by {shown(1e3 * twist.max_twist)} mrad at most, by"
-        f" {shown(1e3 * twist.residual_twist)} mrad at the end; its column that moves most"
-        f" moves {shown(1e3 * twist.max_corner_displacement)} mm, its centre {centre}"
-        f" mm{told}"
+        f" {shown(1e3 * twist.residual_twist)} mrad where its own history ends, at {end}"
+        f" s; its column that moves most moves {farthest} mm, its centre {centre} mm{told}"
     )
     yield columns_table(twist)
     count = len(twist.run.columns)

@@ -54,7 +54,8 @@ def description(structure, pose: Pose) -> Element:
     """Ground, columns, slab and seats in the engine's language."""
     twist = structure.twist
     places = plan_of(structure)
-    assert twist is not None and places is not None, "asked before"  # noqa: PT018
+    assert twist is not None, "asked before"
+    assert places is not None, "asked before"
     model = Element("mujoco")
     _part(model, "compiler", angle="radian", inertiafromgeom="false")
     gravity = f"0 0 {-structure.gravity}"

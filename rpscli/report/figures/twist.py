@@ -41,16 +41,18 @@ def enlargement(twist: TwistResult) -> float:
 def draw_paths(axes: style.Axes, twist: TwistResult) -> None:
     """Where heads moved, from the places of their columns; the worst one red."""
     scale = enlargement(twist)
+    worst = twist.worst_column
+    farthest = f"column {worst + 1}: {twist.max_corner_displacement:#.3g} m"
+    another = 0 if worst else 1
+    labels = {worst: farthest, another: "other columns"}
     for i, (x, y) in enumerate(twist.run.places.tolist()):
         path = twist.column_ways[:, i]
-        worst = i == twist.worst_column
-        label = f"column {i + 1}: {twist.max_corner_displacement:#.3g} m" if worst else ""
         axes.plot(
             x + scale * path[:, 0],
             y + scale * path[:, 1],
-            color=style.RED if worst else style.SKY,
+            color=style.RED if i == worst else style.SKY,
             lw=0.7,
-            label=label or None,
+            label=labels.get(i),
         )
         axes.plot([x], [y], "o", color=style.BLACK, ms=2.5)
     centre = twist.ways
