@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from small_records import VALUES, cosmos, csmip, esm, fixed, geonet, knet, smc, write
 
@@ -520,6 +520,8 @@ VALUE = st.floats(-3.0, 3.0, allow_nan=False, allow_subnormal=False)
 @given(
     st.lists(VALUE, min_size=2, max_size=23), st.floats(1e-6, 0.5), st.text(max_size=300)
 )
+@example([0.0, 0.0], 0.5, "SPECTRA")
+@example([0.0, 0.0], 0.5, "Response spectrum; PSA in units of g")
 def test_what_is_written_is_read_back(values, dt, title):
     motion = GroundMotion(
         np.array(values) * STANDARD_GRAVITY, dt, title, "s", "SMC", title

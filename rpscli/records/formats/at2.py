@@ -268,8 +268,14 @@ def at2_text(motion: GroundMotion) -> str:
     title = "; ".join(
         filter(None, [motion.source if made else motion.name, motion.description])
     )
-    # A title must not be taken for one of the header lines that carry numbers.
-    for words in (r"\b(velocity|displacement)\s+(time)\b", r"\b(n)(pts)\b"):
+    # A title must not be taken for one of the header lines that carry numbers, or say
+    # what these are.
+    for words in (
+        r"\b(velocity|displacement)\s+(time)\b",
+        r"\b(n)(pts)\b",
+        r"\b(spectr)(\w+)",
+        r"\b(u)(nits?)\b",
+    ):
         title = re.sub(words, r"\1-\2", remark(title), flags=re.IGNORECASE)
     values = motion.acceleration / STANDARD_GRAVITY
     rows = [
